@@ -321,11 +321,15 @@ std::string topics(const CLI::App& program) {
         "posewise help TOPIC prints one of these, or explains a key of campaign "
         "files.\n\nCommands:\n";
     for (const CLI::App* const command : commands_of(program)) {
-        text += fmt::format("  {:<22}{}\n", command->get_name(), command->get_description());
+        text += fmt::format("  {:<21} {}\n", command->get_name(), command->get_description());
     }
     text += "\nSections of the manual:\n";
+    std::size_t width = 0;
     for (const ManualSection& section : manual_sections()) {
-        text += fmt::format("  {:<22}{}\n", section.topic, section.title);
+        width = std::max(width, section.topic.size());
+    }
+    for (const ManualSection& section : manual_sections()) {
+        text += fmt::format("  {:<{}}  {}\n", section.topic, width, section.title);
     }
     return text;
 }

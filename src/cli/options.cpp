@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "io/format/text.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -61,12 +62,13 @@ CLI::Option* add_ids_option(CLI::App& command, const std::string& name,
         for (const std::string& text : texts) {
             for (std::string rest = text + ','; !rest.empty();) {
                 const std::size_t comma = rest.find(',');
-                if (comma == 0) {
+                const std::string_view id = detail::trim(std::string_view(rest).substr(0, comma));
+                if (id.empty()) {
                     throw CLI::ValidationError(
                         name, "is " + detail::quote(text) +
                                   "; must be names separated by commas, none empty");
                 }
-                ids.push_back(rest.substr(0, comma));
+                ids.emplace_back(id);
                 if (!allowed.empty() && std::ranges::find(allowed, ids.back()) == allowed.end()) {
                     throw CLI::ValidationError(name, "is " + detail::quote(ids.back()) + "; " +
                                                          detail::suggest(ids.back(), allowed));

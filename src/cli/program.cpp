@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -46,8 +48,10 @@ Joints are rounded to the digits of the file first, then checked again. They are
 they are written to PLAN.as_sent.csv, in the model's joints, for calibrate and select. The loss by
 rounding is printed: the criterion's value and the predicted accuracy, as planned and as sent.
 
---read converts a program that was edited on the pendant to configurations (CSV) and lists the poses
-that were dropped or moved. A campaign file will do instead of the plan, but then nothing is compared.
+--read converts a program that was edited on the pendant to configurations (CSV), lists the poses that
+were dropped, moved (which joint most, and by how much) or lost their name, and warns of stops and
+ways that violate joint limits, joint sums or the cell. Jumps and moves within conditions are refused.
+A campaign file will do instead of the plan, but then nothing is compared.
 
 These formats were not tested on real controllers: read the program, and run it first with --dry-run
 (no waiting, at most 10 % speed) and a hand on the stop.)";
@@ -88,6 +92,12 @@ PlanAndCampaign read_both(const ProgramArguments& arguments) {
     const std::string mismatch = describe_mismatch(plan, campaign);
     if (!mismatch.empty()) throw input_error_at({arguments.plan}, mismatch);
     return {std::move(plan), std::move(campaign)};
+}
+
+/// Of a file; empty if it cannot be read.
+std::string content_of(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 /// "plan.json" to "plan.as_sent.csv".
@@ -255,7 +265,21 @@ void write_program(const ProgramArguments& arguments, const CommonOptions& commo
     check_outputs({&both.campaign}, {arguments.plan}, outputs, common);
     report.loss = compute_from(arguments.plan, [&] { return find_loss(both, sent); });
     warn_of_rounding(report);
+    report.stale = io::stale_program_files(arguments.out, format, program);
+    const std::string before = content_of(report.sent);
     io::write_robot_program(arguments.out, format, program, report.sent, both.campaign, sent);
+    if (!before.empty() && before != content_of(report.sent)) {
+        print_warning(
+            fmt::format("{}: held other joint values, of an earlier program or plan; measurements "
+                        "made with those need them: write that program again before they are used",
+                        report.sent));
+    }
+    for (const std::string& part : report.stale) {
+        print_warning(fmt::format(
+            "{}: is of an earlier, longer program, which {} does not call; remove it here and on "
+            "the controller",
+            part, detail::escape_controls(report.files.front())));
+    }
     if (common.json) return print_document(io::to_json(report, both.campaign));
     print(describe(report));
 }
@@ -264,6 +288,40 @@ std::string describe(const std::string& what, const std::vector<std::string>& id
     if (ids.empty()) return "";
     return fmt::format("{}: {}\n", what,
                        detail::escape_controls(fmt::format("{}", fmt::join(ids, ", "))));
+}
+
+std::string times_text(Index count) { return count == 1 ? "once" : fmt::format("{} times", count); }
+
+/// What differs from the plan.
+std::string describe(const io::ProgramContent& content, const ControllerJoints& controller) {
+    std::vector<std::string> moved;
+    for (const io::MovedPose& pose : content.moved) {
+        const AmountUnits& units = units_of(controller.motion(pose.joint));
+        moved.push_back(fmt::format("{} ({} by {} {}{})", pose.id,
+                                    controller.names()[static_cast<std::size_t>(pose.joint)],
+                                    detail::format_short(units.to_reading(pose.change), 4),
+                                    units.reading, controller.count() > 1 ? " at most" : ""));
+    }
+    std::vector<std::string> visits;
+    for (const auto& [id, count] : content.other_visits) {
+        visits.push_back(fmt::format("{} ({})", id, times_text(count)));
+    }
+    return describe("dropped", content.dropped) + describe("moved", moved) +
+           describe("not of the plan", content.added) +
+           describe("without a name, known by their joints", content.recognised) +
+           describe("without a name, measured at no pose of the plan", content.unnamed) +
+           describe("not visited " + times_text(content.visits) + " as the others", visits);
+}
+
+/// They are still read: what was measured there is measured.
+void warn_of_faults(const io::ProgramContent& content) {
+    constexpr std::size_t most = 10;
+    for (std::size_t k = 0; k < std::min(most, content.faults.size()); ++k) {
+        print_warning(content.faults[k]);
+    }
+    if (content.faults.size() <= most) return;
+    print_warning(
+        fmt::format("{} more of this kind (--json has all)", content.faults.size() - most));
 }
 
 void read_program(const ProgramArguments& arguments, const CommonOptions& common) {
@@ -290,13 +348,13 @@ void read_program(const ProgramArguments& arguments, const CommonOptions& common
     }
     const io::ProgramContent content = io::program_content(
         arguments.read, io::read_robot_program(arguments.read, format, campaign.controller),
-        campaign.controller, steps, sent);
+        campaign, steps, sent);
+    warn_of_faults(content);
     if (!arguments.out.empty()) io::write_program_content(arguments.out, campaign, content);
     if (common.json) return print_document(io::to_json(content, campaign));
     print(fmt::format("{}: {}\n", detail::escape_controls(arguments.read),
                       detail::count_of(std::ssize(content.ids), "configuration")));
-    print(describe("dropped", content.dropped) + describe("moved", content.moved) +
-          describe("not of the plan", content.added));
+    print(describe(content, campaign.controller));
     if (content.dropped.empty() || !sent || !sent->is_continuous()) return;
     print(fmt::format("To plan others instead: posewise plan ... --plan {} --drop {}\n",
                       detail::escape_controls(arguments.plan),
@@ -347,6 +405,10 @@ void add_program_options(CLI::App& command, ProgramArguments& arguments) {
                 .add_option("--speed", arguments.speed_percent,
                             "Per cent of full speed (abb: of 1000 mm/s; ur: of 120 deg/s; ros2: of "
                             "the cell's speed); default: 20")
+                ->transform([](std::string percent) {
+                    if (percent.ends_with('%')) percent.pop_back();
+                    return percent;
+                })
                 ->check(whole_number(1, 100)));
     writing(command
                 .add_option("--handshake", arguments.handshake,

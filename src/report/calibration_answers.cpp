@@ -27,6 +27,28 @@ struct Judged {
     const JudgedGroup* group = nullptr;
 };
 
+/// "4 of 5 poses", and why the others are not among them.
+std::string describe_part(const Judgement& judgement, const JudgedGroup& part,
+                          const std::string& name) {
+    Index all = 0;
+    std::string others;
+    for (const JudgedGroup& group : judgement.groups) {
+        const auto count = std::ssize(group.configurations);
+        all += count;
+        if (&group == &part) continue;
+        others += fmt::format(
+            "{}{} {}", others.empty() ? "" : ", ", count,
+            group.group == PoseGroup::Repeated ? "calibrated with"
+            : group.group == PoseGroup::New
+                ? "within the joint ranges"
+                : "beyond the range of " + fmt::format("{}", fmt::join(group.joints, ", ")));
+    }
+    const auto count = std::ssize(part.configurations);
+    if (others.empty()) return fmt::format("{} {}", count_of(count, "pose"), name);
+    return fmt::format("{} of {} {} (judged apart: {})", count, count_of(all, "pose"), name,
+                       others);
+}
+
 /// Poses that were not calibrated with come first, those like the ones calibrated with before
 /// others.
 Judged judge(const Calibration& calibration) {
@@ -41,7 +63,7 @@ Judged judge(const Calibration& calibration) {
                 return {
                     group.found, group.interval,
                     fmt::format(
-                        "at {} {}{}", count_of(std::ssize(group.configurations), "pose"), name,
+                        "at {}{}", describe_part(**judgement, group, name),
                         kind == PoseGroup::New ? "" : ", beyond the joint ranges calibrated with"),
                     &group};
             }

@@ -59,6 +59,7 @@ TEST_F(ProgramCommand, WritesWhatIsReadBackForEveryController) {
     for (const auto& [controller, file] : programs) {
         const std::string command =
             std::string("program p.json --campaign other.yaml --for ") + controller + ' ';
+        write_text("p.as_sent.csv", "");  // instead of another controller's
         const std::string text = run_well(command + "-o " + file);
         EXPECT_NE(text.find("12 poses in "), std::string::npos) << text;
         EXPECT_NE(text.find("predicted RMS/mm: "), std::string::npos) << text;
@@ -129,6 +130,50 @@ TEST_F(ProgramCommand, SaysWhichPosesAnEditedProgramHasNot) {
     const auto document =
         nlohmann::json::parse(run_well("program p.json --for csv --read edited.csv --json"));
     EXPECT_EQ(document.at("dropped"), std::vector<std::string>{"p3"});
+}
+
+TEST_F(ProgramCommand, SaysWhatMovedAndWhatNoLongerFits) {
+    run_well("program p.json --for csv -o a.csv --campaign cell.yaml");
+    const auto rows = rows_of("a.csv");
+    std::size_t pose = 1;
+    while (rows[pose][0] != "p3") ++pose;
+    const auto edited = [&](double j1, double j6) {
+        std::string text;
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            for (std::size_t j = 0; j < rows[i].size(); ++j) {
+                std::string field = rows[i][j];
+                if (i == pose && j == 1) field = std::to_string(std::stod(field) + j1);
+                if (i == pose && j == 6) field = std::to_string(std::stod(field) + j6);
+                text += (j == 0 ? "" : ",") + field;
+            }
+            text += '\n';
+        }
+        write_text("edited.csv", text);
+        return run("program p.json --for csv --read edited.csv");
+    };
+    const Outcome near = edited(0.25, -0.5);
+    EXPECT_EQ(near.code, 0) << near.err;
+    EXPECT_NE(near.out.find("moved: p3 (J6 by -0.5 deg at most)\n"), std::string::npos) << near.out;
+    const Outcome far = edited(0.25, 1000);
+    EXPECT_EQ(far.code, 0) << far.err;
+    EXPECT_NE(far.err.find("pose 'p3' is beyond the joint limits"), std::string::npos) << far.err;
+    EXPECT_NE(far.err.find("q6 is "), std::string::npos) << far.err;
+    const auto document =
+        nlohmann::json::parse(run("program p.json --for csv --read edited.csv --json").out);
+    EXPECT_EQ(document.at("moved").at(0).at("joint"), "J6");
+    EXPECT_NEAR(document.at("moved").at(0).at("by_deg").get<double>(), 1000, 1e-5);
+    EXPECT_EQ(document.at("faults").size(), 1U);
+}
+
+TEST_F(ProgramCommand, SaysWhatItReplaces) {
+    EXPECT_EQ(run("program p.json --for csv -o a.csv").err, "");
+    EXPECT_EQ(run("program p.json --for csv -o a.csv --speed 30").code, 2);
+    EXPECT_EQ(run("program p.json --for csv -o a.csv").err, "");
+    const Outcome other = run("program p.json --for fanuc -o A.ls --speed 30%");
+    EXPECT_EQ(other.code, 0) << other.err;
+    EXPECT_NE(other.err.find("p.as_sent.csv: held other joint values"), std::string::npos)
+        << other.err;
+    EXPECT_NE(text_of("A.ls").find("30% FINE"), std::string::npos);
 }
 
 TEST_F(ProgramCommand, RefusesWhatNoRobotShouldDo) {

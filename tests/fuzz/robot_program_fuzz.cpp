@@ -12,29 +12,27 @@ namespace {
 
 constexpr const char* data_of_none =
     "<Database><Datas><Data name=\"joints\"><Value key=\"0\" j1=\"1\" j2=\"2\" j3=\"3\" j4=\"4\" "
-    "j5=\"5\" j6=\"6\"/></Data></Datas></Database>";
-constexpr const char* move_to_none = "begin\n// p1\nmovej(joints[0],flange,slow)\nend\n";
+    "j5=\"5\" j6=\"6\"/></Data><Data name=\"slow\"><Value key=\"0\" blend=\"off\"/></Data></Datas>"
+    "</Database>";
+constexpr const char* move_to_none =
+    "<Programs><![CDATA[\nbegin\n// p1\nmovej(joints[0],flange,slow)\nend\n]]></Programs>";
 
-const ControllerJoints& joints() {
-    static const ControllerJoints six = [] {
-        const io::CampaignFile campaign = io::parse_campaign(
-            "name: arm\nrobot:\n  joints: {q1: {limits_deg: [-90, 90]}, q2: {limits_deg: [-90, "
-            "90]}, "
-            "q3: {limits_deg: [-90, 90]}, q4: {limits_deg: [-90, 90]}, q5: {limits_deg: [-90, "
-            "90]}, "
-            "q6: {limits_deg: [-90, 90]}}\n  elements: [Rz q1, Tx 300 mm, Ry q2, Tz 1 m, Ry -q3, "
-            "Tx 1 m, Rx -q4, Ry -q5, Rx -q6]\n"
-            "sensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n"
-            "controller: {pulses_per_deg: [1000, 1000, 1000, 1000, 1000, 1000]}\n",
-            "arm.yaml");
-        return campaign.controller;
-    }();
+const io::CampaignFile& arm() {
+    static const io::CampaignFile six = io::parse_campaign(
+        "name: arm\nrobot:\n  joints: {q1: {limits_deg: [-90, 90]}, q2: {limits_deg: [-90, 90]}, "
+        "q3: {limits_deg: [-90, 90]}, q4: {limits_deg: [-90, 90]}, q5: {limits_deg: [-90, 90]}, "
+        "q6: {limits_deg: [-90, 90]}}\n  elements: [Rz q1, Tx 300 mm, Ry q2, Tz 1 m, Ry -q3, "
+        "Tx 1 m, Rx -q4, Ry -q5, Rx -q6]\n"
+        "sensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n"
+        "controller: {pulses_per_deg: [1000, 1000, 1000, 1000, 1000, 1000]}\n",
+        "arm.yaml");
     return six;
 }
 
 void read(const std::string& path, ProgramFormat format) {
-    const auto stops = io::read_robot_program(path, format, joints());
-    io::program_content(path, stops, joints(), io::joint_steps(format, joints()), std::nullopt);
+    const auto stops = io::read_robot_program(path, format, arm().controller);
+    io::program_content(path, stops, arm(), io::joint_steps(format, arm().controller),
+                        std::nullopt);
 }
 
 /// A project whose data, or else whose program, is the input.
@@ -44,6 +42,8 @@ int read_project(const std::uint8_t* data, std::size_t size, bool is_data) {
     std::filesystem::create_directory(project);
     std::ofstream(project + "/cell.dtx") << data_of_none;
     std::ofstream(project + "/start.pgx") << move_to_none;
+    std::ofstream(project + "/cell.pjx") << "<Project/>";
+    std::ofstream(project + "/stop.pgx") << "<Programs/>";
     const std::string name = is_data ? "/cell.dtx" : "/start.pgx";
     std::ofstream(project + name, std::ios::binary)
         .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));

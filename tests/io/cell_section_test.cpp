@@ -119,6 +119,12 @@ TEST(ReadCell, TakesSumsOfJointsAndHowTheRobotMoves) {
     expect("{q2 - q3: {limits_deg: [0, 1]}}", "21", "'q3' is no joint");
     expect("{q2 - q1: {limits_mm: [0, 1]}}", "37", "must be in deg or rad");
     expect("{q2 - q1: {limits_deg: [1, 0]}}", "38", "lower end must come first");
+    expect_error("  home_deg", "  joint_sums: {q2 - q1: {limits_deg: [-5, 30]}}\n  home_deg",
+                 "30:13", "is beyond joint_sums: q2 - q1 is -10 deg, must be from ");
+    expect_error("  home_deg", "  acceleration_deg_per_s2: [1, 1e-300]\n  home_deg", "29:28",
+                 "is beyond 0.01 to 100000 deg/s^2, which no joint has");
+    expect_error("  home_deg", "  acceleration_deg_per_s2: [200000, 1]\n  home_deg", "29:28",
+                 "which no joint has; is it in deg/s^2?");
     expect_error("  home_deg", "  acceleration_deg_per_s2: [1, 0]\n  home_deg", "29:28",
                  "must be positive");
 }

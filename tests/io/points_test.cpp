@@ -401,6 +401,17 @@ TEST(TargetsFile, IsAListOfWhatIsVisibleWhereItEndsInTxt) {
     EXPECT_EQ(read_back.observations.row(0), table.observations.row(0));
 }
 
+TEST(TargetsFile, HasEachNameOnce) {
+    const TemporaryFolder folder;
+    Plan plan = planned();
+    plan.poses[1].id = "P-01";
+    EXPECT_EQ(input_error_of([&] { write_targets(folder.path("t.csv"), crane(), plan); }),
+              "t.csv: is not written: the plan's poses 'p1' and 'P-01' have the same name for an "
+              "instrument, P-001_T1; must differ by more than capitals, separators and leading "
+              "zeros");
+    EXPECT_EQ(folder.file_count(), 0U);
+}
+
 TEST(TargetsFile, TellsRangeAnglesAndSight) {
     const TemporaryFolder folder;
     CampaignFile file = crane();

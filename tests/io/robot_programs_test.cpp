@@ -8,6 +8,7 @@
 #include <set>
 
 #include "io/format/atomic_file.hpp"
+#include "program_examples.hpp"
 #include "support/places.hpp"
 #include "support/sweep.hpp"
 #include "support/temporary_folder.hpp"
@@ -18,91 +19,6 @@ namespace posewise::io {
 namespace {
 
 using namespace testing;
-
-constexpr double degree = std::numbers::pi / 180;
-constexpr ProgramFormat all_formats[] = {
-    ProgramFormat::Fanuc,   ProgramFormat::Kuka,    ProgramFormat::Abb,  ProgramFormat::Ur,
-    ProgramFormat::Yaskawa, ProgramFormat::Staubli, ProgramFormat::Ros2, ProgramFormat::Csv};
-
-std::string file_of(ProgramFormat format) {
-    switch (format) {
-        case ProgramFormat::Fanuc:
-            return "CELL.LS";
-        case ProgramFormat::Kuka:
-            return "cell.src";
-        case ProgramFormat::Abb:
-            return "cell.mod";
-        case ProgramFormat::Ur:
-            return "cell.script";
-        case ProgramFormat::Yaskawa:
-            return "CELL.JBI";
-        case ProgramFormat::Staubli:
-            return "cell";
-        case ProgramFormat::Ros2:
-            return "cell.yaml";
-        case ProgramFormat::Csv:
-            break;
-    }
-    return "cell.csv";
-}
-
-bool has_handshake(ProgramFormat format) {
-    return format != ProgramFormat::Ros2 && format != ProgramFormat::Csv;
-}
-
-/// The FANUC cell's campaign with a controller.
-CampaignFile cell_with(const std::string& controller) {
-    const std::string path = source_folder() + "/designs/cell_demo/campaign.yaml";
-    return parse_campaign(detail::read_file(path) + "\ncontroller: " + controller + '\n', path);
-}
-
-const std::string example_pulses =
-    "pulses_per_deg: [1341.38, 1907.67, 1592.89, 1022.86, 980.24, 454.75]";
-const std::string reversed_joints =
-    "{joints: [-q1, q2 - 90 deg, q3 - q2 + 90 deg, -q4, q5, -q6], " + example_pulses + "}";
-
-std::string controller_of(ProgramFormat format) {
-    switch (format) {
-        case ProgramFormat::Fanuc:
-            return "{maker: fanuc, j23_factor: 1}";
-        case ProgramFormat::Kuka:
-            return "{joints: [-q1, q2 - 90 deg, 90 deg - q3, q4, -q5, q6]}";
-        case ProgramFormat::Yaskawa:
-            return "{" + example_pulses + "}";
-        case ProgramFormat::Ros2:
-            return "{joints: {joint_1: q1, joint_2: q2, joint_3: q3, joint_4: q4, joint_5: q5, "
-                   "joint_6: q6}}";
-        default:
-            return "{}";
-    }
-}
-
-ProgramStop stop_at(const ControllerJoints& joints, const std::string& label,
-                    const std::vector<double>& q_deg, Index samples = 1) {
-    const VectorXd q = Eigen::Map<const VectorXd>(q_deg.data(), std::ssize(q_deg)) * degree;
-    return {label, joints.to_controller(q), label != "home" && label != "via", samples};
-}
-
-/// Home, three poses and a via, home.
-RobotProgram cell_program(const ControllerJoints& joints) {
-    RobotProgram program;
-    program.title = "posewise, FANUC R-2000iC/165F in a cell";
-    program.date = "2026/01/31 12:00";
-    program.joints = joints;
-    program.stops = {
-        stop_at(joints, "home", {0, -30, 0, 0, 0, 0}),
-        stop_at(joints, "p1",
-                {78.7863738, 16.9178212, -61.6481882, 101.9217523, -63.5325953, 28.3155305}),
-        stop_at(joints, "via", {50, 0, -20, 95, -70, 60}),
-        stop_at(joints, "p2",
-                {32.7248523, -31.2371082, -17.7869347, 91.8262611, -81.6135222, 92.633084}, 2),
-        stop_at(joints, "v1",
-                {-10.9420508, 55.8516709, 42.5794502, 85.3322467, -40.4908827, 148.2132266}),
-        stop_at(joints, "home", {0, -30, 0, 0, 0, 0})};
-    program.dwell = 2;
-    program.joint_speed = VectorXd::Constant(joints.count(), 2);
-    return program;
-}
 
 TEST(RobotPrograms, AreWhatStandsInTheGoldenFiles) {
     // Reviewed line by line; POSEWISE_WRITE_GOLDEN writes them anew.
@@ -179,8 +95,8 @@ TEST(RobotPrograms, MoveTheFlangeWhereThePlanHasIt) {
         write_robot_program(path, format, program, "", campaign, {});
         const VectorXd steps = joint_steps(format, campaign.controller);
         const ProgramContent content =
-            program_content(path, read_robot_program(path, format, campaign.controller),
-                            campaign.controller, steps, std::nullopt);
+            program_content(path, read_robot_program(path, format, campaign.controller), campaign,
+                            steps, std::nullopt);
         ASSERT_EQ(content.ids, (std::vector<std::string>{"p1", "p2.via", "p2", "v1"}));
         VectorXd p1(6);
         p1 << 78.7863738, 16.9178212, -61.6481882, 101.9217523, -63.5325953, 28.3155305;
@@ -188,7 +104,7 @@ TEST(RobotPrograms, MoveTheFlangeWhereThePlanHasIt) {
             return campaign.robot.base_from_flange(
                 q, VectorXd::Zero(campaign.robot.parameter_count()));
         };
-        const Isometry3d planned = flange(p1 * degree);
+        const Isometry3d planned = flange(p1 * to_radians(1));
         const Isometry3d back = flange(content.joints.row(0).transpose());
         constexpr double reach = 3;  // m
         EXPECT_LT((planned.translation() - back.translation()).norm(), 2 * reach * steps.sum())
@@ -272,128 +188,6 @@ TEST(ProgramNames, AreLegalForHostileFiles) {
     EXPECT_EQ(legal_program_name(ProgramFormat::Staubli, "a_name_of_over_15"), "a_name_of_over_");
 }
 
-// ---- Programs that people edited ----
-
-/// Writes the example, changes it, reads it.
-class Edited {
-  public:
-    explicit Edited(ProgramFormat format)
-        : format_(format),
-          campaign_(cell_with(reversed_joints)),
-          path_(folder_.path(file_of(format))) {
-        write_robot_program(path_, format_, cell_program(campaign_.controller), "", campaign_, {});
-    }
-    Edited& replace(const std::string& what, const std::string& by, const std::string& file = "") {
-        const std::string path = file.empty() ? path_ : path_ + file;
-        std::string text = detail::read_file(path);
-        const std::size_t at = text.find(what);
-        EXPECT_NE(at, std::string::npos) << what << " in\n" << text;
-        if (at != std::string::npos) text.replace(at, what.size(), by);
-        detail::write_file(path, text);
-        return *this;
-    }
-    std::vector<std::string> labels() const {
-        std::vector<std::string> labels;
-        for (const ProgramStop& stop : read_robot_program(path_, format_, campaign_.controller)) {
-            labels.push_back(stop.label);
-        }
-        return labels;
-    }
-    std::string error() const {
-        return input_error_of([&] { labels(); });
-    }
-    const CampaignFile& campaign() const { return campaign_; }
-    const std::string& path() const { return path_; }
-
-  private:
-    TemporaryFolder folder_;
-    ProgramFormat format_;
-    CampaignFile campaign_;
-    std::string path_;
-};
-
-TEST(EditedPrograms, AreReadAsTheyCameFromThePendant) {
-    // A pendant names positions, a comment is added, a move dropped.
-    EXPECT_EQ(Edited(ProgramFormat::Fanuc)
-                  .replace("J P[2] 20% FINE", "J P[2:over table] 5% FINE ACC50")
-                  .replace("P[2]{", "P[2:\"over table\"]{")
-                  .replace("  !p2 ;", "  !p2 ;\n  99:  !look at the hoses ;")
-                  .replace("J P[5] 20% FINE", "//J P[5] 20% FINE")
-                  .labels(),
-              (std::vector<std::string>{"home", "p1", "via", "p2", "home"}));
-    EXPECT_EQ(Edited(ProgramFormat::Kuka)
-                  .replace("; p1\nPTP {A1", ";FOLD PTP p1\n; p1\nPTP {E6AXIS: A1")
-                  .labels()
-                  .size(),
-              6U);
-    EXPECT_EQ(Edited(ProgramFormat::Kuka).replace(",A6 ", ", A6 ").labels().size(), 6U);
-}
-
-TEST(EditedPrograms, AreRefusedWhereTheyDoNotStop) {
-    const auto expect = [](const Edited& edited, const std::string& words) {
-        EXPECT_NE(edited.error().find(words), std::string::npos) << edited.error();
-    };
-    expect(Edited(ProgramFormat::Kuka).replace("\nEND\n", "\n"), "has no END; must be the whole");
-    expect(Edited(ProgramFormat::Abb).replace("ENDMODULE", ""), "has no ENDMODULE");
-    expect(Edited(ProgramFormat::Yaskawa).replace("\nEND", "\n"), "has no END");
-    expect(Edited(ProgramFormat::Fanuc).replace("J P[2] 20% FINE", "J P[2] 20% FINE Offset,PR[1]"),
-           "must have none but ACC");
-    expect(Edited(ProgramFormat::Fanuc).replace("J P[2] 20% FINE", "J P[2] 20% CNT50"),
-           "CELL.LS:12:6: does not stop");
-    expect(Edited(ProgramFormat::Fanuc).replace("J P[2]", "L P[2]"), "is no joint move");
-    expect(Edited(ProgramFormat::Fanuc).replace("J P[2]", "J P[22]"), "without joints");
-    expect(Edited(ProgramFormat::Fanuc).replace("/POS", "/NOPOS"), "has no /POS");
-    expect(Edited(ProgramFormat::Fanuc).replace("J1= ", "J1= x"), "is not a number");
-    expect(Edited(ProgramFormat::Kuka).replace("}\nWAIT", "} C_PTP\nWAIT"), "does not stop");
-    expect(Edited(ProgramFormat::Kuka).replace("PTP {A1", "LIN {A1"), "is no joint move");
-    expect(Edited(ProgramFormat::Kuka).replace("PTP {A1", "PTP {A2"), "where A1 must be");
-    expect(Edited(ProgramFormat::Abb).replace("fine", "z10"), "does not stop");
-    expect(Edited(ProgramFormat::Abb).replace("MoveAbsJ", "MoveJ"), "is no move to joints");
-    expect(Edited(ProgramFormat::Ur).replace("r=0)", "r=0.05)"), "does not stop");
-    expect(Edited(ProgramFormat::Ur).replace("movej([", "movej(p["), "is no joint move to numbers");
-    expect(Edited(ProgramFormat::Yaskawa).replace("PL=0", "PL=3"), "does not stop");
-    expect(Edited(ProgramFormat::Yaskawa).replace("POSTYPE PULSE", "POSTYPE ROBOT"), "PULSE");
-    expect(Edited(ProgramFormat::Yaskawa).replace("MOVJ C00001", "MOVJ C00099"), "does not state");
-    expect(Edited(ProgramFormat::Staubli).replace("joints[1]", "joints[9]", "/start.pgx"),
-           "data have none of");
-    expect(Edited(ProgramFormat::Staubli).replace("j6=\"", "j7=\"", "/cell.dtx"), "5 joints");
-    expect(Edited(ProgramFormat::Ros2).replace("J1", "J9"), "no joint of the controller");
-    expect(Edited(ProgramFormat::Ros2).replace("positions: [", "positions: [.nan, "), "positions");
-    expect(Edited(ProgramFormat::Csv).replace("J1_deg", "J9_deg"), "'J1_deg' is missing");
-    expect(Edited(ProgramFormat::Csv).replace("home,", "home,nan"), "not a number");
-}
-
-TEST(EditedPrograms, NameWhatIsMissingMovedAndNew) {
-    Edited edited(ProgramFormat::Csv);
-    const ControllerJoints& joints = edited.campaign().controller;
-    const VectorXd steps = joint_steps(ProgramFormat::Csv, joints);
-    Plan plan;
-    for (const ProgramStop& stop : cell_program(joints).stops) {
-        if (!stop.is_measured) continue;
-        PlannedPose& pose = plan.poses.emplace_back();
-        pose.id = stop.label;
-        pose.configuration = joints.to_model(stop.joints);
-    }
-    plan.verification.push_back(plan.poses.back());
-    plan.poses.pop_back();
-    const auto content = [&] {
-        return program_content(edited.path(),
-                               read_robot_program(edited.path(), ProgramFormat::Csv, joints),
-                               joints, steps, plan);
-    };
-    const ProgramContent same = content();
-    EXPECT_TRUE(same.dropped.empty() && same.moved.empty() && same.added.empty());
-    EXPECT_EQ(same.purposes, (std::vector<std::string>{"calibrate", "via", "calibrate", "verify"}));
-    edited.replace("\np1,", "\nnew,").replace("\nv1,", "\nv1,1");
-    const ProgramContent other = content();
-    EXPECT_EQ(other.dropped, std::vector<std::string>{"p1"});
-    EXPECT_EQ(other.added, std::vector<std::string>{"new"});
-    EXPECT_EQ(other.moved, std::vector<std::string>{"v1"});
-    edited.replace("\nv1,", "\np2,");
-    EXPECT_NE(input_error_of(content).find("visits 'p2' at other joints than before"),
-              std::string::npos);
-}
-
 // ---- What is not written ----
 
 TEST(RobotPrograms, AreSplitWhereAControllerNeedsIt) {
@@ -453,6 +247,41 @@ TEST(RobotPrograms, AreRefusedWhereSomethingIsMissing) {
         EXPECT_NE(error(file_of(format), format, other).find("not finite"), std::string::npos);
     }
     EXPECT_THROW(parse_program_format("kawasaki"), InputError);
+}
+
+TEST(RobotPrograms, NameThePartsOfALongerOneThatAreLeft) {
+    const TemporaryFolder folder;
+    const CampaignFile campaign = cell_with(reversed_joints);
+    const RobotProgram small = cell_program(campaign.controller);
+    RobotProgram large = small;
+    while (large.stops.size() < 1000) large.stops.push_back(small.stops[1]);
+    const std::string path = folder.path("cell.src");
+    const auto stale = [&](const RobotProgram& program) {
+        return stale_program_files(path, ProgramFormat::Kuka, program);
+    };
+    EXPECT_TRUE(stale(large).empty());
+    write_robot_program(path, ProgramFormat::Kuka, large, "", campaign, {});
+    EXPECT_TRUE(stale(large).empty());
+    EXPECT_EQ(stale(small),
+              (std::vector<std::string>{folder.path("cell_1.src"), folder.path("cell_2.src"),
+                                        folder.path("cell_3.src")}));
+}
+
+TEST(RobotPrograms, HaveNoJointWhereNoRobotIs) {
+    const TemporaryFolder folder;
+    const CampaignFile campaign = cell_with(reversed_joints);
+    RobotProgram program = cell_program(campaign.controller);
+    program.stops[1].joints[3] = to_radians(1e6);
+    for (const ProgramFormat format : all_formats) {
+        const std::string path = folder.path(file_of(format));
+        const auto write = [&] { write_robot_program(path, format, program, "", campaign, {}); };
+        EXPECT_EQ(input_error_of(write), "stop 'p1' has 1e+06 deg for J4, which no robot reaches");
+    }
+    EXPECT_EQ(folder.file_count(), 0U);
+    EXPECT_NE(input_error_of([&] {
+                  program_files(folder.path(".script"), ProgramFormat::Ur, program);
+              }).find(".script: has no name before its ending"),
+              std::string::npos);
 }
 
 TEST(RobotPrograms, NeedSixJointsButForRosAndCsv) {

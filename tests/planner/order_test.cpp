@@ -155,12 +155,12 @@ TEST(RandomOrder, TakesAtMostSoManyTimesAsLongAsTheShortest) {
     for (const Index count : {0, 1, 2, 12, 40}) {
         const MatrixXd times = random_times(stream, count);
         const double shortest = shortest_order(times).time;
-        EXPECT_EQ(random_order(times, shortest_order(times), 1).poses,
-                  shortest_order(times).poses);
+        EXPECT_EQ(random_order(times, shortest_order(times), 1).poses, shortest_order(times).poses);
         std::set<std::vector<Index>> orders;
         for (std::uint64_t seed = 1; seed <= 8; ++seed) {
             const OrderOptions options{.kicks = 20, .seed = seed};
-            const VisitingOrder order = random_order(times, shortest_order(times, options), 1.5, options);
+            const VisitingOrder order =
+                random_order(times, shortest_order(times, options), 1.5, options);
             EXPECT_TRUE(is_permutation(order.poses, count));
             EXPECT_LE(order.time, 1.5 * shortest_order(times, options).time);
             EXPECT_NEAR(order.time, order_time(times, order.poses), 1e-12);
@@ -179,7 +179,8 @@ TEST(RandomOrder, DoesNotBeginWhereTheShortestDoes) {
     }
     double correlation = 0;
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-        const std::vector<Index> poses = random_order(times, shortest_order(times, {.seed = seed}), 3, {.seed = seed}).poses;
+        const std::vector<Index> poses =
+            random_order(times, shortest_order(times, {.seed = seed}), 3, {.seed = seed}).poses;
         VectorXd places(30);
         for (Index k = 0; k < 30; ++k)
             places[k] = static_cast<double>(poses[static_cast<std::size_t>(k)]);

@@ -153,6 +153,12 @@ TEST(FormatCalibration, SaysWhetherTheValidationIsAsExpected) {
     EXPECT_TRUE(holds(report(), "the robot has changed")) << report();
     others.configurations(4, 1) += 3;
     EXPECT_TRUE(holds(report(), "\nvalidation, 29 new poses: RMS ")) << report();
+    const std::string accuracy =
+        answer(calibrate(example.campaign, example.measurements, options))[0].text;
+    EXPECT_TRUE(holds(accuracy,
+                      " at 29 of 30 poses of the validation (judged apart: 1 beyond the range of "
+                      "q2); before "))
+        << accuracy;
     EXPECT_TRUE(
         holds(report(), "\nvalidation, 1 pose beyond the joint ranges calibrated with (q2): RMS "))
         << report();

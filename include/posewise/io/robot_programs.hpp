@@ -3,8 +3,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "posewise/core/errors.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/model/controller.hpp"
 #include "posewise/task/plan.hpp"
@@ -47,8 +49,10 @@ struct ProgramStop {
     /// The name of a measured pose; of another stop "home", "via" or, read back, nothing.
     std::string label;
     VectorXd joints;  ///< controller joints, rad or m
+    /// Read back: it has a name, or the program waits there.
     bool is_measured = false;
-    Index samples = 1;  ///< how often the dwell
+    Index samples = 1;        ///< how often the dwell
+    FileLocation place = {};  ///< where it was read
 };
 
 /// A program of joint moves with an exact stop at the end of each.
@@ -77,10 +81,15 @@ std::string legal_program_name(ProgramFormat format, std::string_view text);
 std::vector<std::string> program_files(const std::string& path, ProgramFormat format,
                                        const RobotProgram& program);
 
+/// Parts of an earlier, longer program of the same name that lie in its folder and that the new one
+/// does not call.
+std::vector<std::string> stale_program_files(const std::string& path, ProgramFormat format,
+                                             const RobotProgram& program);
+
 /// Writes the program and, unless its path is empty, the plan as it is sent as CSV of
 /// write_configurations_csv(), in model coordinates: all files or none. Throws InputError as
-/// joint_steps() and program_files(), for a handshake that the format has none of, and for more
-/// stops than the controller takes.
+/// joint_steps() and program_files(), for a handshake that the format has none of, for more stops
+/// than the controller takes, and for a joint where no robot is.
 void write_robot_program(const std::string& path, ProgramFormat format, const RobotProgram& program,
                          const std::string& sent_path, const Campaign& campaign, const Plan& sent);
 
@@ -90,6 +99,13 @@ void write_robot_program(const std::string& path, ProgramFormat format, const Ro
 std::vector<ProgramStop> read_robot_program(const std::string& path, ProgramFormat format,
                                             const ControllerJoints& joints);
 
+/// A pose that a program visits elsewhere than was sent.
+struct MovedPose {
+    std::string id;
+    Index joint = 0;    ///< of the controller, the one that moved most
+    double change = 0;  ///< rad or m
+};
+
 /// What a program that was read holds, in model coordinates.
 struct ProgramContent {
     /// In the order of first visits; purposes as in write_configurations_csv().
@@ -97,15 +113,26 @@ struct ProgramContent {
     RowMatrixXd joints;  ///< stops x joints, rad or m
     std::vector<std::string> purposes;
     std::vector<std::string> dropped;  ///< poses of the plan that the program does not visit
-    std::vector<std::string> moved;    ///< poses elsewhere than sent, by over half a step
+    std::vector<MovedPose> moved;      ///< poses elsewhere than sent, by over half a step
     std::vector<std::string> added;    ///< names that the plan has none of
+    /// Poses that a stop without a name is at.
+    std::vector<std::string> recognised;
+    /// Stops without a name where the program waits, at none of the plan's poses: "stop5" is the
+    /// fifth move.
+    std::vector<std::string> unnamed;
+    Index visits = 1;                                         ///< how often most poses are visited
+    std::vector<std::pair<std::string, Index>> other_visits;  ///< the others, and how often
+    /// What keeps the robot from running it, see find_faults() of the task.
+    std::vector<std::string> faults;
 };
 
 /// The stops as configurations, home and repeated visits left out. `sent` is empty where no plan is
-/// known. Throws InputError, beginning with `path`, if visits of one pose differ by more than half
-/// a step.
+/// known. A stop without a name is the pose of the plan that it is at, to half a step; else, if the
+/// program waits there, a pose of its own; else a via. Throws InputError, beginning with `path`,
+/// if visits of one pose differ by more than half a step, and for a campaign whose cell contradicts
+/// itself.
 ProgramContent program_content(const std::string& path, const std::vector<ProgramStop>& stops,
-                               const ControllerJoints& joints, const VectorXd& steps,
+                               const CampaignFile& campaign, const VectorXd& steps,
                                const std::optional<Plan>& sent);
 
 /// What was written.
@@ -116,9 +143,10 @@ struct ProgramReport {
     Index stop_count = 0;            ///< moves
     Index visit_count = 0;           ///< moves to poses that are measured
     std::optional<RoundingLoss> loss = {};
+    std::vector<std::string> stale = {};  ///< see stale_program_files()
 };
 std::string to_json(const ProgramReport& report, const Campaign& campaign);
-std::string to_json(const ProgramContent& content, const Campaign& campaign);
+std::string to_json(const ProgramContent& content, const CampaignFile& campaign);
 
 /// Writes CSV: config, the joints in degrees or mm, purpose.
 void write_program_content(const std::string& path, const Campaign& campaign,

@@ -61,14 +61,17 @@ class Join {
     }
 
     void name_points(const std::string& plan_path) {
-        for (std::size_t place = 0; place < measured_.size(); ++place) {
-            const auto [found, is_new] = place_of_.emplace(name_key(name(place)), place);
-            if (is_new) continue;
+        std::vector<std::string> ids;
+        for (const PlannedPose* const pose : poses_) ids.push_back(pose->id);
+        if (const auto same = find_same_name(ids, static_cast<Index>(targets_))) {
             throw input_error_at(
                 {plan_path},
-                fmt::format("its poses {} and {} have the same name for an instrument, "
-                            "{}; must differ",
-                            quote(id(found->second)), quote(id(place)), name(place)));
+                fmt::format("its poses {} and {} have the same name for an instrument, {}; must "
+                            "differ",
+                            quote(same->first), quote(same->second), same->name));
+        }
+        for (std::size_t place = 0; place < measured_.size(); ++place) {
+            place_of_.emplace(name_key(name(place)), place);
         }
         for (std::size_t place = 0; place < measured_.size(); ++place) {
             place_of_.emplace(name_key(fmt::format("{}_T{}", id(place), place % targets_ + 1)),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <unordered_map>
 
 namespace posewise::detail {
 namespace {
@@ -33,6 +34,18 @@ std::string pose_name(std::string_view id) {
 
 std::string target_name(std::string_view id, Index target) {
     return fmt::format("{}_T{}", pose_name(id), target + 1);
+}
+
+std::optional<SameName> find_same_name(const std::vector<std::string>& ids, Index target_count) {
+    std::unordered_map<std::string, std::size_t> taken;
+    for (std::size_t k = 0; k < ids.size(); ++k) {
+        for (Index target = 0; target < target_count; ++target) {
+            const std::string name = target_name(ids[k], target);
+            const auto [found, is_new] = taken.emplace(name_key(name), k);
+            if (!is_new) return SameName{ids[found->second], ids[k], name};
+        }
+    }
+    return std::nullopt;
 }
 
 std::string name_key(std::string_view name) {

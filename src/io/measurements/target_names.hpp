@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "posewise/core/types.hpp"
 
@@ -14,6 +16,14 @@ std::string pose_name(std::string_view id);
 
 /// "P001_T1": a pose's target, from 0.
 std::string target_name(std::string_view id, Index target);
+
+/// Two ids of which some targets have names that mean the same, and such a name.
+struct SameName {
+    std::string first;
+    std::string second;
+    std::string name;
+};
+std::optional<SameName> find_same_name(const std::vector<std::string>& ids, Index target_count);
 
 /// What names that mean the same have in common: what stands behind the last `::`, without regard
 /// to case, leading zeros, and separators unless between two digits. "p1t1" of "A::B::P001_T1".

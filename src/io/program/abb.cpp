@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/text.hpp"
 #include "io/format/text.hpp"
-#include "program_text.hpp"
+#include "program_stops.hpp"
 
 /// ABB RAPID modules (.mod), whose lines end in CR LF.
 namespace posewise::detail {
@@ -61,23 +62,72 @@ std::vector<FileContent> abb_files(const std::string& path, const io::RobotProgr
     return {{path, with_carriage_returns(text + "  ENDPROC\nENDMODULE\n")}};
 }
 
+/// The statements of a line, and its comment with the mark in front.
+std::vector<TextLine> abb_statements(const TextLine& line) {
+    std::vector<TextLine> statements;
+    const auto add = [&](std::size_t begin, std::size_t end) {
+        const std::string_view text = trim(line.text.substr(begin, end - begin));
+        if (text.empty()) return;
+        TextLine& statement = statements.emplace_back(line);
+        statement.text = text;
+        statement.place.column += text.data() - line.text.data();
+    };
+    std::size_t begin = 0;
+    bool is_quoted = false;
+    for (std::size_t k = 0; k < line.text.size(); ++k) {
+        const char letter = line.text[k];
+        if (letter == '"') is_quoted = !is_quoted;
+        if (is_quoted || (letter != ';' && letter != '!')) continue;
+        add(begin, k);
+        begin = letter == '!' ? k : k + 1;
+        if (letter == '!') break;
+    }
+    add(begin, line.text.size());
+    return statements;
+}
+
+/// Throws InputError unless the move to joints ends in an exact stop, and moves nothing else.
+void check_abb_move(const TextLine& line) {
+    if (!line.has(",fine,") && !line.has(", fine,")) {
+        throw line.error("does not stop at its position; must have the zone fine");
+    }
+    const std::size_t open = line.text.find('[', line.text.find(']'));
+    const std::size_t close = line.text.find(']', std::min(open, line.text.size()));
+    if (close == std::string_view::npos) return;
+    for (const double axis : read_numbers(line, line.text.substr(open + 1, close - open - 1))) {
+        if (axis == 0 || axis == 9e9) continue;
+        throw line.error(fmt::format(
+            "moves an external axis to {}, which is not of the robot's joints; must be 9E9", axis));
+    }
+}
+
+void check_abb_statement(const TextLine& line) {
+    for (const char* const other : {"MoveJ", "MoveL", "MoveC", "MoveExtJ"}) {
+        if (line.begins_with(other)) throw line.error("is no move to joints; must be MoveAbsJ");
+    }
+    if (line.has("MoveAbsJ") && !line.has("\"")) {
+        throw line.error("moves under a condition; must be MoveAbsJ in a statement of its own");
+    }
+}
+
 std::vector<io::ProgramStop> read_abb(const std::string& path, const ControllerJoints& joints) {
     const ProgramFile file(path, "ENDMODULE");
-    std::vector<io::ProgramStop> stops;
-    std::string comment;
+    StopCollector stops(abb_program().rules, joints);
     for (const TextLine& line : file.lines()) {
-        if (line.begins_with("!")) note_comment(line.text.substr(1), comment);
-        for (const char* const other : {"MoveJ", "MoveL", "MoveC"}) {
-            if (line.begins_with(other)) throw line.error("is no move to joints; must be MoveAbsJ");
+        for (const TextLine& one : abb_statements(line)) {
+            if (one.begins_with("!")) {
+                stops.note(one.text.substr(1));
+            } else if (one.begins_with("MoveAbsJ")) {
+                const std::vector<double> numbers = read_numbers(one, abb_joints(one));
+                check_abb_move(one);
+                stops.move(one, numbers);
+            } else {
+                check_abb_statement(one);
+                stops.pass(one);
+            }
         }
-        if (!line.begins_with("MoveAbsJ")) continue;
-        if (!line.has(",fine,") && !line.has(", fine,")) {
-            throw line.error("does not stop at its position; must have the zone fine");
-        }
-        stops.push_back(make_stop(line, abb_program().rules, joints,
-                                  read_numbers(line, abb_joints(line)), comment));
     }
-    return stops;
+    return stops.finish();
 }
 
 }  // namespace
@@ -93,7 +143,15 @@ const ProgramKind& abb_program() {
                   "ENDWHILE ERROR EXIT FALSE FOR FROM FUNC GOTO IF INOUT LOCAL MOD MODULE "
                   "NOSTEPIN NOT NOVIEW OR PERS PROC RAISE READONLY RECORD RETRY RETURN "
                   "STEP SYSMODULE TASK TEST THEN TO TRAP TRUE TRYNEXT UNDO VAR VIEWONLY "
-                  "WHILE WITH XOR main user base"},
+                  "WHILE WITH XOR main user base",
+         .flow = {.routines = "PROC FUNC TRAP",
+                  .opens = "IF FOR WHILE TEST",
+                  .closes = "ENDPROC ENDFUNC ENDTRAP ENDIF ENDFOR ENDWHILE ENDTEST",
+                  .jumps = "GOTO",
+                  .leaves = "RETURN EXIT ExitCycle ERROR UNDO BACKWARD RAISE",
+                  .modifiers = "LOCAL TASK"},
+         .waits = "WaitTime WaitDI WaitUntil Stop Break",
+         .messages = "TPWrite"},
         &abb_files,
         &read_abb};
     return kind;

@@ -5,7 +5,7 @@
 
 #include "io/format/csv_reader.hpp"
 #include "io/format/text.hpp"
-#include "program_text.hpp"
+#include "program_stops.hpp"
 
 /// Plain CSV in the units of the controller.
 namespace posewise::detail {
@@ -53,22 +53,26 @@ std::vector<io::ProgramStop> read_program_table(const std::string& path,
     for (Index i = 0; i < joints.count(); ++i) wanted.push_back(column_of(joints, i));
     const std::vector<std::size_t> columns = find_columns(reader, wanted);
     const std::size_t width = reader.fields().size();
-    std::vector<io::ProgramStop> stops;
+    const auto& fields = reader.fields();
+    const auto dwell = static_cast<std::size_t>(
+        std::ranges::find(fields, std::string_view("dwell_s")) - fields.begin());
+    StopCollector stops(csv_program().rules, joints);
     while (reader.next_row()) {
         if (reader.fields().size() != width) {
             throw input_error_at(reader.locate(0), fmt::format("has {} fields; must have {}",
                                                                reader.fields().size(), width));
         }
-        std::string comment(reader.fields()[columns[0]]);
+        const auto number_at = [&](std::size_t column) {
+            const TextLine field{reader.fields()[column], reader.locate(column)};
+            return read_numbers(field, field.text).front();
+        };
+        stops.name(reader.fields()[columns[0]]);
         std::vector<double> numbers;
-        for (std::size_t k = 1; k < columns.size(); ++k) {
-            const TextLine field{reader.fields()[columns[k]], reader.locate(columns[k])};
-            numbers.push_back(read_numbers(field, field.text).front());
-        }
-        stops.push_back(
-            make_stop({"", reader.locate(0)}, csv_program().rules, joints, numbers, comment));
+        for (std::size_t k = 1; k < columns.size(); ++k) numbers.push_back(number_at(columns[k]));
+        stops.move({"", reader.locate(0)}, numbers);
+        if (dwell < width && number_at(dwell) > 0) stops.wait();
     }
-    return stops;
+    return stops.finish();
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "core/text.hpp"
 #include "io/format/text.hpp"
-#include "program_text.hpp"
+#include "program_stops.hpp"
 
 /// FANUC TP programs as text (.LS).
 namespace posewise::detail {
@@ -70,6 +70,31 @@ std::size_t read_fanuc_index(const TextLine& line, std::string_view text) {
     return static_cast<std::size_t>(number.value);
 }
 
+/// The joints of "J1= 10.000 deg, J2= ...". Throws InputError for axes that no plan moves, which
+/// are E1 and those of other groups, unless they are 0.
+void read_fanuc_axes(const TextLine& line, bool is_first_group, std::vector<double>& joints) {
+    std::string_view rest = line.text;
+    for (std::size_t at = rest.find('='); at != std::string_view::npos; at = rest.find('=')) {
+        const std::string_view before = rest.substr(0, at);
+        const std::string_view name =
+            trim(before.substr(std::min(before.find_first_not_of(", \t"), before.size())));
+        rest.remove_prefix(at + 1);
+        const std::size_t end = std::min(rest.find("deg"), rest.find("mm"));
+        const bool is_other = name.starts_with('E') || !is_first_group;
+        const bool is_joint = !is_other && name.starts_with('J') && end == rest.find("deg");
+        if ((!is_joint && !is_other) || end >= rest.size()) return;
+        const double value = read_numbers(line, rest.substr(0, end)).front();
+        if (is_joint) joints.push_back(value);
+        if (is_other && value != 0) {
+            throw line.error(
+                fmt::format("has {} at {}, an axis that is not of the robot's joints; must be 0",
+                            name, trim(rest.substr(0, end))));
+        }
+        rest.remove_prefix(end);
+        rest.remove_prefix(std::min(rest.find_first_of(", \t"), rest.size()));
+    }
+}
+
 /// The first group's joints of each position; a Cartesian one has none.
 std::map<std::size_t, std::vector<double>> read_fanuc_positions(const std::vector<TextLine>& lines,
                                                                 std::size_t begin) {
@@ -86,16 +111,7 @@ std::map<std::size_t, std::vector<double>> read_fanuc_positions(const std::vecto
         } else if (line.begins_with("GP")) {
             is_first_group = line.begins_with("GP1");
         }
-        if (joints == nullptr || !is_first_group) continue;
-        std::string_view rest = line.text;
-        for (std::size_t at = rest.find('='); at != std::string_view::npos; at = rest.find('=')) {
-            const std::string_view name = trim(rest.substr(0, at));
-            rest.remove_prefix(at + 1);
-            const std::size_t end = std::min(rest.find("deg"), rest.size());
-            if (name.find('J') == std::string_view::npos || end == rest.size()) break;
-            joints->push_back(read_numbers(line, rest.substr(0, end)).front());
-            rest.remove_prefix(end);
-        }
+        if (joints != nullptr) read_fanuc_axes(line, is_first_group, *joints);
     }
     return positions;
 }
@@ -136,6 +152,22 @@ std::vector<FileContent> fanuc_files(const std::string& path, const io::RobotPro
                                body.text(), positions)}};
 }
 
+/// Throws InputError unless the joint move ends in an exact stop at its position.
+void check_fanuc_move(const TextLine& line) {
+    if (!line.has("FINE")) throw line.error("does not stop at its position; must end FINE");
+    const std::string_view options = trim(line.text.substr(line.text.find("FINE") + 4));
+    if (options.empty() || options.starts_with("ACC")) return;
+    throw line.error(fmt::format(
+        "has {} after FINE, which may lead elsewhere; must have none but ACC", quote(options)));
+}
+
+void check_fanuc_statement(const TextLine& line) {
+    for (const char* const other : {"L P", "C P", "A P", "J PR"}) {
+        if (!line.begins_with(other)) continue;
+        throw line.error("is no joint move to a position of the program; must be J P[...]");
+    }
+}
+
 std::vector<io::ProgramStop> read_fanuc(const std::string& path, const ControllerJoints& joints) {
     const ProgramFile file(path);
     const std::vector<TextLine>& lines = file.lines();
@@ -149,32 +181,27 @@ std::vector<io::ProgramStop> read_fanuc(const std::string& path, const Controlle
         return k + 1;
     };
     const std::size_t end = section("/POS") - 1;
+    section("/END");
     const auto positions = read_fanuc_positions(lines, end + 1);
-    std::vector<io::ProgramStop> stops;
-    std::string comment;
+    StopCollector stops(fanuc_program().rules, joints);
     for (std::size_t k = section("/MN"); k < end; ++k) {
         const TextLine line = fanuc_statement(lines[k]);
-        if (line.begins_with("!")) note_comment(line.text.substr(1), comment);
-        for (const char* const other : {"L P", "C P", "A P", "J PR"}) {
-            if (line.begins_with(other)) {
-                throw line.error("is no joint move to a position of the program; must be J P[...]");
+        if (line.begins_with("!")) {
+            stops.note(line.text.substr(1));
+        } else if (line.begins_with("J P[")) {
+            check_fanuc_move(line);
+            const auto found = positions.find(read_fanuc_index(line, line.text.substr(4)));
+            if (found == positions.end() || found->second.empty()) {
+                throw line.error(
+                    "moves to a position without joints; must be in degrees under /POS");
             }
+            stops.move(line, found->second);
+        } else if (!line.begins_with("//")) {
+            check_fanuc_statement(line);
+            stops.pass(line);
         }
-        if (!line.begins_with("J P[")) continue;
-        if (!line.has("FINE")) throw line.error("does not stop at its position; must end FINE");
-        const std::string_view options = trim(line.text.substr(line.text.find("FINE") + 4));
-        if (!options.empty() && !options.starts_with("ACC")) {
-            throw line.error(
-                fmt::format("has {} behind FINE, which may lead elsewhere; must have none but ACC",
-                            quote(options)));
-        }
-        const auto found = positions.find(read_fanuc_index(line, line.text.substr(4)));
-        if (found == positions.end() || found->second.empty()) {
-            throw line.error("moves to a position without joints; must be in degrees under /POS");
-        }
-        stops.push_back(make_stop(line, fanuc_program().rules, joints, found->second, comment));
     }
-    return stops;
+    return stops.finish();
 }
 
 }  // namespace
@@ -184,7 +211,12 @@ const ProgramKind& fanuc_program() {
                                    .decimals = 3,
                                    .longest_name = 32,
                                    .is_upper = true,
-                                   .words = "CON PRN AUX NUL COM1 LPT1"},
+                                   .words = "CON PRN AUX NUL COM1 LPT1",
+                                   .flow = {.opens = "IF FOR",
+                                            .closes = "ENDIF ENDFOR",
+                                            .jumps = "JMP TIMEOUT",
+                                            .leaves = "END ABORT"},
+                                   .waits = "WAIT PAUSE CALL"},
                                   &fanuc_files,
                                   &read_fanuc};
     return kind;

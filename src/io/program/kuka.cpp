@@ -5,7 +5,7 @@
 
 #include "core/text.hpp"
 #include "io/format/text.hpp"
-#include "program_text.hpp"
+#include "program_stops.hpp"
 
 /// KUKA KRL (.src, .dat).
 namespace posewise::detail {
@@ -66,6 +66,14 @@ std::vector<std::string> split_stops(const io::RobotProgram& program) {
     return parts;
 }
 
+/// Throws InputError for an axis "E1 10.0" that is not one of the robot's joints, unless it is 0.
+void check_external_axis(const TextLine& line, std::string_view axis) {
+    const std::size_t blank = std::min(axis.find_first_of(" \t"), axis.size());
+    if (read_numbers(line, axis.substr(blank)).front() == 0) return;
+    throw line.error(
+        fmt::format("has {}, an axis that is not of the robot's joints; must be 0", quote(axis)));
+}
+
 /// The numbers of "{A1 10.00,A2 -90.0, ...}", in order.
 std::vector<double> read_axes(const TextLine& line) {
     const std::size_t open = line.text.find('{');
@@ -82,7 +90,10 @@ std::vector<double> read_axes(const TextLine& line) {
         const std::size_t comma = std::min(rest.find(','), rest.size());
         const std::string_view one = trim(rest.substr(0, comma));
         rest.remove_prefix(std::min(comma + 1, rest.size()));
-        if (one.starts_with('E') || one.starts_with('e')) continue;  // external axes
+        if (one.starts_with('E') || one.starts_with('e')) {
+            check_external_axis(line, one);
+            continue;
+        }
         const std::string name = fmt::format("A{}", numbers.size() + 1);
         if (!one.starts_with(name)) {
             throw line.error(fmt::format("has {} where {} must be", quote(one), name));
@@ -92,39 +103,63 @@ std::vector<double> read_axes(const TextLine& line) {
     return numbers;
 }
 
-void read_part(const std::string& path, const TextLine& call, const ControllerJoints& joints,
-               std::vector<io::ProgramStop>& stops);
-
-void read_module(const std::string& path, const ControllerJoints& joints, bool has_parts,
-                 std::vector<io::ProgramStop>& stops) {
-    const ProgramFile file(path, "END");
-    const std::string part = stem_of(path) + "_";
-    std::string comment;
-    for (const TextLine& line : file.lines()) {
-        if (line.begins_with(";FOLD") || line.begins_with(";ENDFOLD")) continue;
-        if (line.begins_with(";")) note_comment(line.text.substr(1), comment);
-        if (has_parts && line.begins_with(part) && line.text.ends_with(')')) {
-            read_part(path, line, joints, stops);
-        }
-        for (const char* const other : {"LIN", "CIRC", "SPL", "SPTP", "SLIN", "PTP_REL"}) {
-            if (line.begins_with(other)) throw line.error("is no joint move; must be PTP {A1 ...}");
-        }
-        if (!line.begins_with("PTP") || line.has("$AXIS_ACT")) continue;
-        if (line.has("C_PTP") || line.has("C_DIS")) {
-            throw line.error("does not stop at its position; must have no C_PTP");
-        }
-        stops.push_back(make_stop(line, kuka_program().rules, joints, read_axes(line), comment));
+/// Throws InputError unless the move to joints ends in an exact stop.
+void check_kuka_move(const TextLine& line) {
+    if (line.has("C_PTP") || line.has("C_DIS")) {
+        throw line.error("does not stop at its position; must have no C_PTP");
     }
 }
 
-/// The program in a file beside `path` that a line of it calls.
-void read_part(const std::string& path, const TextLine& call, const ControllerJoints& joints,
-               std::vector<io::ProgramStop>& stops) {
+void check_kuka_statement(const TextLine& line) {
+    for (const char* const other : {"LIN", "CIRC", "SPL", "SPTP", "SLIN"}) {
+        if (line.begins_with(other)) throw line.error("is no joint move; must be PTP {A1 ...}");
+    }
+}
+
+/// What stands before a comment.
+TextLine without_comment(TextLine line) {
+    line.text = trim(line.text.substr(0, line.text.find(';')));
+    return line;
+}
+
+std::vector<io::ProgramStop> read_part(const std::string& path, const TextLine& call,
+                                       const ControllerJoints& joints);
+
+/// The stops of a file and, if it has parts, of the programs NAME_1 ... that it calls.
+std::vector<io::ProgramStop> read_module(const std::string& path, const ControllerJoints& joints,
+                                         bool has_parts) {
+    const ProgramFile file(path, "END");
+    const std::string part = stem_of(path) + "_";
+    StopCollector stops(kuka_program().rules, joints);
+    for (const TextLine& line : file.lines()) {
+        if (line.begins_with(";FOLD") || line.begins_with(";ENDFOLD")) continue;
+        if (line.begins_with(";")) {
+            stops.note(line.text.substr(1));
+        } else if (has_parts && line.begins_with(part) && line.text.ends_with(')')) {
+            stops.call(line, read_part(path, line, joints));
+        } else if (line.begins_with("PTP") && line.has("$AXIS_ACT")) {
+            continue;
+        } else if (line.begins_with("PTP_REL")) {
+            throw line.error("is no move to joints; must be PTP {A1 ...}");
+        } else if (line.begins_with("PTP")) {
+            check_kuka_move(line);
+            stops.move(line, read_axes(line));
+        } else {
+            check_kuka_statement(line);
+            stops.pass(without_comment(line));
+        }
+    }
+    return stops.finish();
+}
+
+/// The stops of the program beside `path` that a line of it calls.
+std::vector<io::ProgramStop> read_part(const std::string& path, const TextLine& call,
+                                       const ControllerJoints& joints) {
     const std::string_view name = trim(call.text.substr(0, call.text.find('(')));
     if (!is_identifier(name)) throw call.error("calls no program; must be like NAME_1( )");
     const std::string part = sibling_of(path, std::string(name) + ending_of(path));
     try {
-        read_module(part, joints, false, stops);
+        return read_module(part, joints, false);
     } catch (const InputError& problem) {
         throw call.error(fmt::format("calls a program that cannot be used: {}", problem.what()));
     }
@@ -152,9 +187,7 @@ std::vector<FileContent> kuka_files(const std::string& path, const io::RobotProg
 }
 
 std::vector<io::ProgramStop> read_kuka(const std::string& path, const ControllerJoints& joints) {
-    std::vector<io::ProgramStop> stops;
-    read_module(path, joints, true, stops);
-    return stops;
+    return read_module(path, joints, true);
 }
 
 }  // namespace
@@ -169,7 +202,14 @@ const ProgramKind& kuka_program() {
                   "ENDWHILE ENUM EXIT EXT EXTFCT FALSE FOR GLOBAL GOTO HALT IF IMPORT INT "
                   "INTERRUPT IS LIN LOOP BAS BOOL CONTINUE PTP PULSE REAL REPEAT RETURN "
                   "SIGNAL STRUC SWITCH THEN TO TRIGGER TRUE UNTIL WAIT WHILE AND OR NOT "
-                  "EXOR B_AND B_OR"},
+                  "EXOR B_AND B_OR",
+         .flow = {.routines = "DEF DEFFCT",
+                  .opens = "IF FOR WHILE LOOP REPEAT SWITCH",
+                  .closes = "END ENDFCT ENDIF ENDFOR ENDWHILE ENDLOOP UNTIL ENDSWITCH",
+                  .jumps = "GOTO RESUME",
+                  .leaves = "RETURN",
+                  .modifiers = "GLOBAL"},
+         .waits = "WAIT HALT"},
         &kuka_files,
         &read_kuka};
     return kind;

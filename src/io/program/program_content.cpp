@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <map>
-#include <set>
 
 #include "core/text.hpp"
 #include "io/format/csv_reader.hpp"
@@ -19,118 +19,191 @@ bool is_same(const VectorXd& a, const VectorXd& b, const VectorXd& steps) {
     return ((a - b).cwiseAbs().array() <= half_step * steps.array()).all();
 }
 
-/// Poses of the plan by their labels, with what they are for.
+/// A pose of the plan and what it is for.
 struct Expected {
-    std::string id;
     const PlannedPose* pose = nullptr;
     std::string_view purpose;
+    VectorXd joints;  ///< of the controller
 };
 
-std::map<std::string, Expected> expected_of(const std::optional<Plan>& sent) {
+/// By their labels in small letters, which tell them apart, whatever a pendant makes of them.
+std::map<std::string, Expected> expected_of(const std::optional<Plan>& sent,
+                                            const ControllerJoints& joints) {
     std::map<std::string, Expected> expected;
     if (!sent) return expected;
     std::vector<Expected> all;
     std::vector<std::string> ids;
     const auto add = [&](const std::vector<PlannedPose>& poses, std::string_view purpose) {
         for (const PlannedPose& pose : poses) {
-            all.push_back({pose.id, &pose, purpose});
+            all.push_back(
+                {&pose, purpose, joints.to_controller(pose.configuration.head(joints.count()))});
             ids.push_back(pose.id);
         }
     };
     add(sent->poses, detail::to_calibrate);
     add(sent->verification, detail::to_verify);
     const std::vector<std::string> labels = pose_labels(ids);
-    for (std::size_t k = 0; k < all.size(); ++k) expected[labels[k]] = all[k];
+    for (std::size_t k = 0; k < all.size(); ++k) expected[detail::lower_case(labels[k])] = all[k];
     return expected;
 }
 
 /// The content as it grows, stop by stop.
 class ContentReader {
   public:
-    ContentReader(std::string path, const ControllerJoints& joints, const VectorXd& steps,
+    ContentReader(std::string path, const CampaignFile& campaign, const VectorXd& steps,
                   const std::optional<Plan>& sent)
         : path_(std::move(path)),
-          joints_(joints),
+          campaign_(campaign),
+          joints_(campaign.controller),
           steps_(steps),
-          expected_(expected_of(sent)),
-          has_plan_(sent.has_value()) {}
+          sent_(sent),
+          expected_(expected_of(sent, joints_)) {}
 
     void take(const ProgramStop& stop) {
-        if (stop.label == "home") return passed_.clear();
-        if (!stop.is_measured) return passed_.push_back(stop.joints);
-        const auto [first, is_new] = visits_.emplace(stop.label, stop.joints);
+        ++stop_count_;
+        using Kind = RouteStop::Kind;
+        if (stop.label == "home") {
+            passed_.clear();
+            return add_stop(Kind::Home, "home", stop);
+        }
+        const std::string id = id_of(stop);
+        if (id.empty()) {
+            passed_.push_back(stop.joints);
+            return add_stop(Kind::Via, "", stop);
+        }
+        add_stop(Kind::Pose, id, stop);
+        ++visits_[id];
+        const auto [first, is_new] = joints_of_.emplace(id, stop.joints);
         if (is_new) {
-            add_pose(stop);
+            add_pose(id, stop);
         } else if (!is_same(stop.joints, first->second, steps_)) {
-            throw InputError(fmt::format(
-                "{}: visits {} at other joints than before; must be at the same, or have another "
-                "name",
-                path_, detail::quote(stop.label)));
+            throw input_error_at(
+                stop.place.path.empty() ? FileLocation{path_} : stop.place,
+                fmt::format("visits {} at other joints than before; must be at the same, or have "
+                            "another name",
+                            detail::quote(stop.label.empty() ? id : stop.label)));
         }
         passed_.clear();
     }
 
-    ProgramContent content(const std::optional<Plan>& sent) {
+    ProgramContent content() {
         content_.joints.resize(std::ssize(rows_), joints_.count());
         for (std::size_t k = 0; k < rows_.size(); ++k) {
             content_.joints.row(static_cast<Index>(k)) = joints_.to_model(rows_[k]).transpose();
         }
-        if (sent) find_dropped(*sent);
+        find_dropped();
+        count_visits();
+        try {
+            content_.faults = find_faults(route_, campaign_, sent_);
+        } catch (const InputError& problem) {
+            throw input_error_at({campaign_.path}, problem.what());
+        }
         return content_;
     }
 
   private:
+    void add_stop(RouteStop::Kind kind, const std::string& id, const ProgramStop& stop) {
+        route_.push_back({kind, id, 1, joints_.to_model(stop.joints)});
+    }
+
+    /// Of the pose that the stop is; empty: it is a via.
+    std::string id_of(const ProgramStop& stop) {
+        if (!stop.label.empty()) {
+            if (!stop.is_measured) return "";
+            const auto found = expected_.find(detail::lower_case(stop.label));
+            return found == expected_.end() ? stop.label : found->second.pose->id;
+        }
+        for (const auto& [label, expected] : expected_) {
+            if (!is_same(stop.joints, expected.joints, steps_)) continue;
+            note(expected.pose->id, content_.recognised);
+            return expected.pose->id;
+        }
+        if (!stop.is_measured) return "";
+        std::string id = fmt::format("stop{}", stop_count_);
+        while (joints_of_.contains(id) || expected_.contains(id)) id += '_';
+        note(id, content_.unnamed);
+        return id;
+    }
+
+    static void note(const std::string& id, std::vector<std::string>& ids) {
+        if (std::ranges::find(ids, id) == ids.end()) ids.push_back(id);
+    }
+
     void add_row(const std::string& id, const VectorXd& joints, std::string_view purpose) {
         content_.ids.push_back(id);
         content_.purposes.emplace_back(purpose);
         rows_.push_back(joints);
     }
 
-    void add_pose(const ProgramStop& stop) {
-        const auto found = expected_.find(stop.label);
+    void add_pose(const std::string& id, const ProgramStop& stop) {
+        const auto found = std::ranges::find_if(
+            expected_, [&](const auto& one) { return one.second.pose->id == id; });
         const bool is_known = found != expected_.end();
-        const std::string id = is_known ? found->second.id : stop.label;
         for (std::size_t k = 0; k < passed_.size(); ++k) {
             add_row(fmt::format("{}.via{}", id, k == 0 ? "" : std::to_string(k + 1)), passed_[k],
                     detail::on_the_way);
         }
         add_row(id, stop.joints, is_known ? found->second.purpose : detail::to_calibrate);
-        if (!has_plan_) return;
-        if (!is_known) return content_.added.push_back(id);
-        visited_.insert(id);
-        const VectorXd planned =
-            joints_.to_controller(found->second.pose->configuration.head(joints_.count()));
-        if (!is_same(stop.joints, planned, steps_)) content_.moved.push_back(id);
+        if (!sent_) return;
+        if (is_known) return find_moved(id, stop.joints - found->second.joints);
+        if (!stop.label.empty()) content_.added.push_back(id);
     }
 
-    void find_dropped(const Plan& sent) {
-        for (const auto* poses : {&sent.poses, &sent.verification}) {
+    void find_moved(const std::string& id, const VectorXd& change) {
+        if (is_same(change, VectorXd::Zero(change.size()), steps_)) return;
+        Index joint = 0;
+        change.cwiseAbs().maxCoeff(&joint);
+        content_.moved.push_back({id, joint, change[joint]});
+    }
+
+    void find_dropped() {
+        if (!sent_) return;
+        for (const auto* poses : {&sent_->poses, &sent_->verification}) {
             for (const PlannedPose& pose : *poses) {
-                if (!visited_.contains(pose.id)) content_.dropped.push_back(pose.id);
+                if (!visits_.contains(pose.id)) content_.dropped.push_back(pose.id);
             }
         }
     }
 
+    void count_visits() {
+        std::map<Index, Index> poses;  // that are visited so often
+        for (const auto& [id, count] : visits_) ++poses[count];
+        Index most = 0;
+        for (const auto& [count, number] : poses) {
+            if (number <= most) continue;
+            most = number;
+            content_.visits = count;
+        }
+        for (const std::string& id : content_.ids) {
+            const auto found = visits_.find(id);
+            if (found == visits_.end() || found->second == content_.visits) continue;
+            content_.other_visits.emplace_back(id, found->second);
+        }
+    }
+
     std::string path_;
+    const CampaignFile& campaign_;
     const ControllerJoints& joints_;
     const VectorXd& steps_;
+    const std::optional<Plan>& sent_;
     std::map<std::string, Expected> expected_;
-    bool has_plan_;
-    std::map<std::string, VectorXd> visits_;
-    std::set<std::string> visited_;
+    std::map<std::string, VectorXd> joints_of_;  // the first visit's
+    std::map<std::string, Index> visits_;
     std::vector<VectorXd> passed_;
     std::vector<VectorXd> rows_;
+    std::vector<RouteStop> route_;
+    Index stop_count_ = 0;
     ProgramContent content_;
 };
 
 }  // namespace
 
 ProgramContent program_content(const std::string& path, const std::vector<ProgramStop>& stops,
-                               const ControllerJoints& joints, const VectorXd& steps,
+                               const CampaignFile& campaign, const VectorXd& steps,
                                const std::optional<Plan>& sent) {
-    ContentReader reader(path, joints, steps, sent);
+    ContentReader reader(path, campaign, steps, sent);
     for (const ProgramStop& stop : stops) reader.take(stop);
-    return reader.content(sent);
+    return reader.content();
 }
 
 void write_program_content(const std::string& path, const Campaign& campaign,

@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "io/format/text.hpp"
-#include "io/format/units.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -18,6 +17,15 @@ char upper_case(char letter) {
 }
 
 bool is_same_letter(char a, char b) { return upper_case(a) == upper_case(b); }
+
+}  // namespace
+
+std::string lower_case(std::string text) {
+    for (char& letter : text) {
+        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    }
+    return text;
+}
 
 bool is_word(std::string_view text, std::string_view words) {
     while (!words.empty()) {
@@ -32,8 +40,6 @@ const Unit& unit_of(const ProgramRules& rules, Motion motion) {
     const bool turns = motion == Motion::Rotation;
     return *find_unit(rules.is_in_radians ? (turns ? "rad" : "m") : (turns ? "deg" : "mm"));
 }
-
-}  // namespace
 
 std::string legal_name(std::string_view text, std::size_t longest, bool is_upper,
                        std::string_view words) {
@@ -141,37 +147,6 @@ std::vector<double> read_numbers(const TextLine& line, std::string_view text) {
         if (comma == text.size()) return numbers;
         text.remove_prefix(comma + 1);
     }
-}
-
-void note_comment(std::string_view text, std::string& comment) {
-    const std::string_view word = trim(text);
-    if (!word.empty() && word.size() <= longest_label && is_identifier('_' + std::string(word))) {
-        comment = word;
-    }
-}
-
-io::ProgramStop make_stop(const TextLine& line, const ProgramRules& rules,
-                          const ControllerJoints& joints, const std::vector<double>& numbers,
-                          std::string& comment) {
-    if (std::ssize(numbers) != joints.count()) {
-        throw line.error(fmt::format("moves {} joints; must be {}, as the robot has",
-                                     numbers.size(), joints.count()));
-    }
-    io::ProgramStop stop;
-    stop.label = comment;
-    stop.joints.resize(joints.count());
-    for (Index i = 0; i < joints.count(); ++i) {
-        const double value = numbers[static_cast<std::size_t>(i)];
-        const double si = unit_of(rules, joints.motion(i)).to_si(value);
-        if (!is_plausible(si, quantity_of(joints.motion(i)))) {
-            throw line.error(
-                fmt::format("has {} for joint {}, which no robot reaches", value, i + 1));
-        }
-        stop.joints[i] = si;
-    }
-    stop.is_measured = !comment.empty() && comment != "home" && comment != "via";
-    comment.clear();
-    return stop;
 }
 
 }  // namespace posewise::detail

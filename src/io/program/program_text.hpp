@@ -5,11 +5,23 @@
 #include <vector>
 
 #include "io/format/atomic_file.hpp"
+#include "io/format/units.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/io/robot_programs.hpp"
 
 /// What writers and readers of programs share.
 namespace posewise::detail {
+
+/// Words that decide whether what follows them is run, and how often; separated by blanks.
+struct FlowWords {
+    std::string_view routines = "";   ///< begin a routine
+    std::string_view opens = "";      ///< begin what may be passed over or repeated
+    std::string_view closes = "";     ///< end the last of both
+    std::string_view jumps = "";      ///< go on elsewhere, wherever they stand in a statement
+    std::string_view leaves = "";     ///< end a routine before its end
+    std::string_view modifiers = "";  ///< stand in front of others
+    bool has_then = true;             ///< IF without THEN is of one statement
+};
 
 /// What a format's files are like.
 struct ProgramRules {
@@ -23,6 +35,9 @@ struct ProgramRules {
     std::string_view words = "";  ///< that name no program, separated by blanks
     bool has_pause = true;
     bool has_io = true;
+    FlowWords flow = {};
+    std::string_view waits = "";     ///< begin statements at which the robot waits
+    std::string_view messages = "";  ///< begin statements that show the pose's label
 };
 
 /// A format, which stands in a file of its own: its rules, its writer and its reader, both of the
@@ -35,8 +50,10 @@ struct ProgramKind {
 
 inline constexpr std::size_t longest_label = 16;
 
-/// Letters, digits and underscores, the first a letter, none of the words (separated by blanks,
-/// whatever their case).
+std::string lower_case(std::string text);
+/// Whether it is one of the words, which blanks separate, whatever their case.
+bool is_word(std::string_view text, std::string_view words);
+/// Letters, digits and underscores, the first a letter, none of the words.
 std::string legal_name(std::string_view text, std::size_t longest, bool is_upper,
                        std::string_view words);
 
@@ -50,6 +67,8 @@ std::string ending_of(const std::string& path);
 /// The same path with another name and ending in its folder.
 std::string sibling_of(const std::string& path, const std::string& name);
 
+/// The file's unit of a joint.
+const Unit& unit_of(const ProgramRules& rules, Motion motion);
 /// A joint value in the file's unit, with its decimals; never "-0.000".
 std::string joint_text(const ProgramRules& rules, Motion motion, double si);
 /// All of a stop, separated.
@@ -88,16 +107,6 @@ class ProgramFile {
 
 /// The finite numbers of `text`, separated by commas. Throws InputError at the line.
 std::vector<double> read_numbers(const TextLine& line, std::string_view text);
-
-/// A comment of a program: it names the next move if it could be a pose's label, home or via; else
-/// it says something to people, and what stood before holds.
-void note_comment(std::string_view text, std::string& comment);
-
-/// Joints in the file's unit as a stop, named by the comment before it. Throws InputError at the
-/// line for another number of joints.
-io::ProgramStop make_stop(const TextLine& line, const ProgramRules& rules,
-                          const ControllerJoints& joints, const std::vector<double>& numbers,
-                          std::string& comment);
 
 const ProgramKind& fanuc_program();
 const ProgramKind& kuka_program();

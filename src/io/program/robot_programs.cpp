@@ -20,6 +20,7 @@ namespace posewise::io {
 namespace {
 
 using detail::FileContent;
+using detail::lower_case;
 using detail::ProgramRules;
 
 constexpr detail::Names<ProgramFormat, 8> formats{{{ProgramFormat::Fanuc, "fanuc"},
@@ -83,19 +84,25 @@ void check_program(ProgramFormat format, const RobotProgram& program) {
             throw InputError("stop " + detail::quote(stop.label) +
                              " has a joint that is missing or not finite");
         }
+        for (Index i = 0; i < stop.joints.size(); ++i) {
+            const detail::Quantity quantity = detail::quantity_of(program.joints.motion(i));
+            if (detail::is_plausible(stop.joints[i], quantity)) continue;
+            const AmountUnits& units = units_of(program.joints.motion(i));
+            throw InputError(fmt::format("stop {} has {:g} {} for {}, which no robot reaches",
+                                         detail::quote(stop.label),
+                                         units.to_reading(stop.joints[i]), units.reading,
+                                         program.joints.names()[static_cast<std::size_t>(i)]));
+        }
     }
-}
-
-std::string lower_case(std::string text) {
-    for (char& letter : text) {
-        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    }
-    return text;
 }
 
 void check_path(const std::string& path, ProgramFormat format) {
     const ProgramRules& rules = kind_of(format).rules;
     const std::string stem = detail::stem_of(path);
+    if (stem.empty() || lower_case(stem) == rules.ending) {
+        throw InputError(fmt::format("{}: has no name before its ending; must be like {}", path,
+                                     detail::sibling_of(path, "cell" + std::string(rules.ending))));
+    }
     if (lower_case(detail::ending_of(path)) != rules.ending) {
         throw InputError(
             rules.ending.empty()
@@ -173,11 +180,26 @@ std::string legal_program_name(ProgramFormat format, std::string_view text) {
 std::vector<std::string> program_files(const std::string& path, ProgramFormat format,
                                        const RobotProgram& program) {
     check_path(path, format);
+    check_program(format, program);
     std::vector<std::string> paths;
     for (const FileContent& file : kind_of(format).write(path, program)) {
         paths.push_back(file.path);
     }
     return paths;
+}
+
+std::vector<std::string> stale_program_files(const std::string& path, ProgramFormat format,
+                                             const RobotProgram& program) {
+    std::vector<std::string> stale;
+    if (format != ProgramFormat::Kuka) return stale;
+    const std::vector<std::string> files = program_files(path, format, program);
+    for (Index part = 1;; ++part) {
+        const std::string name = fmt::format("{}_{}", detail::stem_of(path), part);
+        const std::string source = detail::sibling_of(path, name + detail::ending_of(path));
+        if (std::ranges::find(files, source) != files.end()) continue;
+        if (!std::filesystem::exists(source)) return stale;
+        stale.push_back(source);
+    }
 }
 
 void write_robot_program(const std::string& path, ProgramFormat format, const RobotProgram& program,

@@ -8,7 +8,7 @@
 
 #include "core/text.hpp"
 #include "io/format/yaml_reader.hpp"
-#include "program_text.hpp"
+#include "program_stops.hpp"
 
 /// ROS 2: one trajectory_msgs/JointTrajectory for each stop, as YAML, and named states.
 namespace posewise::detail {
@@ -109,17 +109,17 @@ std::vector<FileContent> ros2_files(const std::string& path, const io::RobotProg
 std::vector<io::ProgramStop> read_ros2(const std::string& path, const ControllerJoints& joints) {
     constexpr std::size_t most_bytes = 1 << 26;
     const YamlMap file(parse_yaml(read_file(path, most_bytes), path), {"goals", "named_states"});
-    std::vector<io::ProgramStop> stops;
+    StopCollector stops(ros2_program().rules, joints);
     for (const YamlValue& goal : file.require("goals").list()) {
         const YamlMap map(goal, {"name", "dwell_s", "trajectory"});
-        const auto name = map.find("name");
-        std::string comment = name ? name->text() : "";
+        if (const auto name = map.find("name")) stops.name(name->text());
         const YamlMap trajectory(map.require("trajectory"), {"header", "joint_names", "points"});
         const TextLine line{"", map.require("trajectory").location()};
-        stops.push_back(make_stop(line, ros2_program().rules, joints,
-                                  read_ros_positions(trajectory, joints), comment));
+        stops.move(line, read_ros_positions(trajectory, joints));
+        const auto dwell = map.find("dwell_s");
+        if (dwell && dwell->number() > 0) stops.wait();
     }
-    return stops;
+    return stops.finish();
 }
 
 }  // namespace

@@ -5,9 +5,10 @@
 #include <iterator>
 #include <map>
 
+#include "core/text.hpp"
 #include "io/format/text.hpp"
 #include "io/format/xml_document.hpp"
-#include "program_text.hpp"
+#include "program_stops.hpp"
 
 /// Staubli VAL3 projects: a folder.
 namespace posewise::detail {
@@ -80,12 +81,18 @@ std::string staubli_stop(const io::RobotProgram& program, const io::ProgramStop&
 
 using Val3Positions = std::map<std::string, std::vector<double>>;
 
+pugi::xml_node data_named(const XmlDocument& document, std::string_view name) {
+    return document.root().child("Datas").find_child_by_attribute("Data", "name",
+                                                                  std::string(name).c_str());
+}
+
 /// Attributes j1, j2, ... of each value of `joints`, by key.
-Val3Positions read_val3_positions(const std::string& path) {
-    const XmlDocument document(path);
-    const pugi::xml_node joints =
-        document.root().child("Datas").find_child_by_attribute("Data", "name", "joints");
-    if (!joints) throw input_error_at({path}, "has no Data joints; must be of a program's project");
+Val3Positions read_val3_positions(const XmlDocument& document) {
+    const pugi::xml_node joints = data_named(document, "joints");
+    if (!joints) {
+        throw input_error_at({document.path()},
+                             "has no Data joints; must be of a program's project");
+    }
     Val3Positions positions;
     for (const pugi::xml_node value : joints.children("Value")) {
         std::vector<double>& numbers = positions[value.attribute("key").value()];
@@ -131,21 +138,61 @@ std::vector<FileContent> staubli_files(const std::string& path, const io::RobotP
             {file_in(path, "stop.pgx"), val3_program("stop", "public", "  resetMotion()\n")}};
 }
 
-std::vector<io::ProgramStop> read_staubli(const std::string& path, const ControllerJoints& joints) {
-    const Val3Positions positions = read_val3_positions(file_in(path, folder_name(path) + ".dtx"));
-    const ProgramFile file(file_in(path, "start.pgx"));
-    std::vector<io::ProgramStop> stops;
-    std::string comment;
-    for (const TextLine& line : file.lines()) {
-        if (line.begins_with("//")) note_comment(line.text.substr(2), comment);
-        for (const char* const other : {"movel(", "movec("}) {
-            if (line.begins_with(other)) throw line.error("is no joint move; must be movej(...)");
-        }
-        if (!line.begins_with("movej(")) continue;
-        stops.push_back(make_stop(line, staubli_program().rules, joints,
-                                  val3_position(line, positions), comment));
+/// Throws InputError where the motion descriptor, the third argument, is not one without blending.
+void check_val3_move(const TextLine& line, const XmlDocument& data) {
+    const std::size_t close = std::min(line.text.rfind(')'), line.text.size());
+    const std::size_t comma = line.text.rfind(',', close);
+    const std::string_view third =
+        comma == std::string_view::npos ? "" : trim(line.text.substr(comma + 1, close - comma - 1));
+    const std::string_view name = third.substr(0, third.find('['));
+    const pugi::xml_node values = data_named(data, name);
+    if (!values) {
+        throw line.error(
+            fmt::format("moves as {} says, which the project's data have none of", quote(name)));
     }
-    return stops;
+    for (const pugi::xml_node value : values.children("Value")) {
+        if (std::string_view(value.attribute("blend").value()) == "off") continue;
+        throw line.error(
+            fmt::format("does not stop at its position; {} must have blend=\"off\"", quote(name)));
+    }
+}
+
+void check_val3_statement(const TextLine& line) {
+    for (const char* const other : {"movel", "movec"}) {
+        if (line.begins_with(other)) throw line.error("is no joint move; must be movej(...)");
+    }
+    if (line.has("movej(") && !line.has("\"")) {
+        throw line.error("moves under a condition; must be movej in a line of its own");
+    }
+}
+
+/// Throws InputError where a file of the project is missing or was not copied to its end.
+void check_val3_files(const std::string& folder) {
+    for (const std::string& name : {folder_name(folder) + ".pjx", std::string("stop.pgx")}) {
+        const XmlDocument whole(file_in(folder, name));
+    }
+}
+
+std::vector<io::ProgramStop> read_staubli(const std::string& path, const ControllerJoints& joints) {
+    const XmlDocument data(file_in(path, folder_name(path) + ".dtx"));
+    const Val3Positions positions = read_val3_positions(data);
+    const XmlDocument whole(file_in(path, "start.pgx"));
+    const ProgramFile file(whole.path(), "end");
+    check_val3_files(path);
+    StopCollector stops(staubli_program().rules, joints);
+    for (const TextLine& line : file.lines()) {
+        if (line.begins_with("//")) {
+            stops.note(line.text.substr(2));
+        } else if (line.begins_with("movej(")) {
+            const std::vector<double> position = val3_position(line, positions);
+            check_val3_move(line, data);
+            stops.move(line, position);
+        } else {
+            check_val3_statement(line);
+            stops.pass(line);
+        }
+    }
+    return stops.finish();
 }
 
 }  // namespace
@@ -157,7 +204,13 @@ const ProgramKind& staubli_program() {
          .longest_name = 15,
          .words = "start stop begin end if then else endif for to do while endwhile until "
                   "switch case call return and or not true false flange world",
-         .has_io = false},
+         .has_io = false,
+         .flow = {.opens = "if while for do switch",
+                  .closes = "endIf endWhile endFor until endSwitch",
+                  .leaves = "return",
+                  .has_then = false},
+         .waits = "delay get wait call",
+         .messages = "putln"},
         &staubli_files,
         &read_staubli};
     return kind;

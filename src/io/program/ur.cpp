@@ -1,7 +1,8 @@
 #include <fmt/format.h>
 
+#include "core/text.hpp"
 #include "io/format/text.hpp"
-#include "program_text.hpp"
+#include "program_stops.hpp"
 
 /// Universal Robots URScript (.script).
 namespace posewise::detail {
@@ -38,17 +39,31 @@ std::string ur_stop(const io::RobotProgram& program, const io::ProgramStop& stop
 std::string_view ur_joints(const TextLine& line) {
     const std::size_t open = line.text.find('[');
     const std::size_t close = line.text.find(']', std::min(open, line.text.size()));
-    if (!line.begins_with("movej([") || close == std::string_view::npos) {
+    if (!line.text.starts_with("movej") && line.begins_with("movej")) {
+        throw line.error("is no word of URScript, which tells capitals apart; must be movej");
+    }
+    if (!line.text.starts_with("movej([") || close == std::string_view::npos) {
         throw line.error("is no joint move to numbers; must be like movej([0, -1.57, ...], ...)");
     }
     return line.text.substr(open + 1, close - open - 1);
 }
 
-/// A blend radius that is not zero.
-bool is_blended(const TextLine& line) {
-    const std::size_t at = line.text.find("r=");
-    return at != std::string_view::npos &&
-           line.text.find_first_of("123456789", at) != std::string_view::npos;
+/// Throws InputError unless the blend radius is zero: "r=...", or the fifth argument.
+void check_ur_stop(const TextLine& line) {
+    const std::size_t begin = line.text.find(']') + 1;
+    std::string_view rest = line.text.substr(begin, line.text.find(')', begin) - begin);
+    for (int position = 1; !rest.empty(); ++position) {
+        const std::size_t comma = std::min(rest.find(','), rest.size());
+        const std::string_view argument = trim(rest.substr(0, comma));
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
+        const std::size_t equals = argument.find('=');
+        const bool has_name = equals != std::string_view::npos;
+        const std::string_view name = has_name ? trim(argument.substr(0, equals)) : "";
+        if (has_name ? name != "r" : position != 5) continue;
+        const ParsedNumber radius = parse_number(trim(argument.substr(has_name ? equals + 1 : 0)));
+        if (radius.ok() && radius.value == 0) continue;
+        throw line.error("does not stop at its position; must have r=0");
+    }
 }
 
 std::vector<FileContent> ur_files(const std::string& path, const io::RobotProgram& program) {
@@ -58,22 +73,38 @@ std::vector<FileContent> ur_files(const std::string& path, const io::RobotProgra
     return {{path, text + fmt::format("end\n{}()\n", name)}};
 }
 
+void check_ur_statement(const TextLine& line) {
+    for (const char* const other : {"movel", "movep", "movec", "servo", "speedj", "speedl"}) {
+        if (line.begins_with(other)) throw line.error("is no joint move; must be movej([...])");
+    }
+    if (line.has("movej(") && !line.has("\"")) {
+        throw line.error("moves under a condition; must be movej in a line of its own");
+    }
+}
+
+/// What stands before a comment.
+TextLine without_comment(TextLine line) {
+    line.text = trim(line.text.substr(0, line.text.find('#')));
+    return line;
+}
+
 std::vector<io::ProgramStop> read_ur(const std::string& path, const ControllerJoints& joints) {
     const ProgramFile file(path);
-    std::vector<io::ProgramStop> stops;
-    std::string comment;
-    for (const TextLine& line : file.lines()) {
-        if (line.begins_with("#")) note_comment(line.text.substr(1), comment);
-        for (const char* const other : {"movel", "movep", "movec", "servoj", "speedj"}) {
-            if (line.begins_with(other)) throw line.error("is no joint move; must be movej([...])");
+    StopCollector stops(ur_program().rules, joints);
+    for (const TextLine& whole : file.lines()) {
+        const TextLine line = without_comment(whole);
+        if (line.text.empty()) {
+            stops.note(whole.text.substr(1));
+        } else if (line.begins_with("movej")) {
+            const std::string_view numbers = ur_joints(line);
+            check_ur_stop(line);
+            stops.move(line, read_numbers(line, numbers));
+        } else {
+            check_ur_statement(line);
+            stops.pass(line);
         }
-        if (!line.begins_with("movej")) continue;
-        const std::string_view numbers = ur_joints(line);
-        if (is_blended(line)) throw line.error("does not stop at its position; must have r=0");
-        stops.push_back(
-            make_stop(line, ur_program().rules, joints, read_numbers(line, numbers), comment));
     }
-    return stops;
+    return stops.finish();
 }
 
 }  // namespace
@@ -86,7 +117,14 @@ const ProgramKind& ur_program() {
          .has_program_name = false,
          .words = "and break continue def elif else end enter_critical exit_critical "
                   "False global halt if join kill local not or pass return run sec thread "
-                  "True while xor movej sleep popup textmsg sync"},
+                  "True while xor movej sleep popup textmsg sync",
+         .flow = {.routines = "def sec",
+                  .opens = "if while thread switch",
+                  .closes = "end",
+                  .leaves = "return halt",
+                  .has_then = false},
+         .waits = "sleep popup",
+         .messages = "textmsg popup"},
         &ur_files,
         &read_ur};
     return kind;

@@ -6,8 +6,9 @@
 #include <map>
 #include <set>
 
+#include "core/text.hpp"
 #include "io/format/text.hpp"
-#include "program_text.hpp"
+#include "program_stops.hpp"
 
 /// Yaskawa INFORM jobs (.jbi) in pulses, whose lines end in CR LF.
 namespace posewise::detail {
@@ -52,13 +53,30 @@ std::string position_name(const TextLine& line, std::size_t begin) {
     return std::string(rest.substr(0, end));
 }
 
-io::ProgramStop pulse_stop(const TextLine& line, const ControllerJoints& joints,
-                           const std::vector<double>& pulses, std::string& comment) {
+std::vector<double> degrees_of(const std::vector<double>& pulses, const ControllerJoints& joints) {
     std::vector<double> degrees;
     for (std::size_t i = 0; i < pulses.size() && std::ssize(degrees) < joints.count(); ++i) {
         degrees.push_back(to_degrees(pulses[i] / joints.pulses_per_unit()[static_cast<Index>(i)]));
     }
-    return make_stop(line, yaskawa_program().rules, joints, degrees, comment);
+    return degrees;
+}
+
+/// Throws InputError unless "MOVJ C00000 VJ=5.00 PL=0" ends in an exact stop of these axes only.
+void check_yaskawa_move(const TextLine& line) {
+    if (!line.has("PL=0")) throw line.error("does not stop at its position; must have PL=0");
+    std::string_view rest = line.text;
+    for (int position = 0; !rest.empty(); ++position) {
+        const std::size_t blank = std::min(rest.find_first_of(" \t"), rest.size());
+        const std::string_view word = rest.substr(0, blank);
+        rest = trim(rest.substr(blank));
+        if (position < 2) continue;
+        const bool is_known = word.starts_with("VJ=") || word == "PL=0" ||
+                              word.starts_with("ACC=") || word.starts_with("DEC=");
+        if (is_known) continue;
+        throw line.error(
+            fmt::format("has {}, which may lead elsewhere; must have none but VJ, PL, ACC and DEC",
+                        quote(word)));
+    }
 }
 
 /// Throws InputError unless the positions are in pulses of joints.
@@ -96,38 +114,47 @@ std::vector<FileContent> yaskawa_files(const std::string& path, const io::RobotP
 std::vector<io::ProgramStop> read_yaskawa(const std::string& path, const ControllerJoints& joints) {
     const ProgramFile file(path, "END");
     std::map<std::string, std::vector<double>> positions;
-    std::vector<io::ProgramStop> stops;
-    std::string comment;
+    StopCollector stops(yaskawa_program().rules, joints);
     bool is_instruction = false;
     for (const TextLine& line : file.lines()) {
         check_kind(line);
         if (line.begins_with("//INST")) is_instruction = true;
-        if (line.begins_with("'")) note_comment(line.text.substr(1), comment);
         const std::size_t equals = line.text.find('=');
-        if (!is_instruction && line.begins_with("C") && equals != std::string_view::npos) {
+        if (line.begins_with("'")) {
+            stops.note(line.text.substr(1));
+        } else if (!is_instruction) {
+            if (!line.begins_with("C") || equals == std::string_view::npos) continue;
             positions[position_name(line, 0)] = read_numbers(line, line.text.substr(equals + 1));
+        } else if (line.begins_with("MOVJ")) {
+            check_yaskawa_move(line);
+            const auto found =
+                positions.find(position_name(line, std::min<std::size_t>(5, line.text.size())));
+            if (found == positions.end()) {
+                throw line.error(
+                    "moves to a position that the job does not state; must be like MOVJ C00000");
+            }
+            stops.move(line, degrees_of(found->second, joints));
+        } else {
+            stops.pass(line);
         }
-        if (!line.begins_with("MOVJ")) continue;
-        if (!line.has("PL=0")) throw line.error("does not stop at its position; must have PL=0");
-        const auto found =
-            positions.find(position_name(line, std::min<std::size_t>(5, line.text.size())));
-        if (found == positions.end()) {
-            throw line.error(
-                "moves to a position that the job does not state; must be like "
-                "MOVJ C00000");
-        }
-        stops.push_back(pulse_stop(line, joints, found->second, comment));
     }
-    return stops;
+    return stops.finish();
 }
 
 }  // namespace
 
 const ProgramKind& yaskawa_program() {
-    static const ProgramKind kind{
-        {.ending = ".jbi", .decimals = 0, .longest_name = 32, .is_upper = true},
-        &yaskawa_files,
-        &read_yaskawa};
+    static const ProgramKind kind{{.ending = ".jbi",
+                                   .decimals = 0,
+                                   .longest_name = 32,
+                                   .is_upper = true,
+                                   .flow = {.opens = "IFTHEN FOR WHILE SWITCH",
+                                            .closes = "ENDIF NEXT ENDWHILE ENDSWITCH",
+                                            .jumps = "JUMP",
+                                            .leaves = "RET ABORT"},
+                                   .waits = "TIMER PAUSE WAIT CALL"},
+                                  &yaskawa_files,
+                                  &read_yaskawa};
     return kind;
 }
 

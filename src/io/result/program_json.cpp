@@ -14,6 +14,7 @@ std::string to_json(const ProgramReport& report, const Campaign& campaign) {
     document["as_sent"] = report.sent;
     document["moves"] = report.stop_count;
     document["measured"] = report.visit_count;
+    document["stale"] = report.stale;
     if (report.loss) {
         const RoundingLoss& loss = *report.loss;
         Json& rounding = document["rounding"];
@@ -28,7 +29,7 @@ std::string to_json(const ProgramReport& report, const Campaign& campaign) {
     return detail::json_text(document);
 }
 
-std::string to_json(const ProgramContent& content, const Campaign& campaign) {
+std::string to_json(const ProgramContent& content, const CampaignFile& campaign) {
     Json document = detail::make_document("program read");
     document["campaign"] = campaign.name;
     Json& list = document["configurations"] = Json::array();
@@ -42,8 +43,24 @@ std::string to_json(const ProgramContent& content, const Campaign& campaign) {
         list.push_back(one);
     }
     document["dropped"] = content.dropped;
-    document["moved"] = content.moved;
+    Json& moved = document["moved"] = Json::array();
+    for (const MovedPose& pose : content.moved) {
+        const bool turns = campaign.controller.motion(pose.joint) == Motion::Rotation;
+        moved.push_back(
+            {{"id", pose.id},
+             {"joint", campaign.controller.names()[static_cast<std::size_t>(pose.joint)]},
+             {turns ? "by_deg" : "by_mm",
+              turns ? to_degrees(pose.change) : mm_per_m * pose.change}});
+    }
     document["added"] = content.added;
+    document["recognised"] = content.recognised;
+    document["unnamed"] = content.unnamed;
+    document["visits"] = content.visits;
+    Json& others = document["other_visits"] = Json::array();
+    for (const auto& [id, count] : content.other_visits) {
+        others.push_back({{"id", id}, {"visits", count}});
+    }
+    document["faults"] = content.faults;
     return detail::json_text(document);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/text.hpp"
 #include "io/format/atomic_file.hpp"
 #include "io/measurements/target_names.hpp"
 #include "measurement/cell_check.hpp"
@@ -63,6 +64,17 @@ void check_has_targets(const std::string& path, const Campaign& campaign) {
 
 std::string targets_text(const std::string& path, const Campaign& campaign, const Plan& plan) {
     check_has_targets(path, campaign);
+    std::vector<std::string> ids;
+    for (const auto* poses : {&plan.poses, &plan.verification}) {
+        for (const PlannedPose& pose : *poses) ids.push_back(pose.id);
+    }
+    if (const auto same = find_same_name(ids, campaign.sensor->target_count())) {
+        throw input_error_at(
+            {path}, fmt::format("is not written: the plan's poses {} and {} have the same name for "
+                                "an instrument, {}; must differ by more than capitals, separators "
+                                "and leading zeros",
+                                quote(same->first), quote(same->second), same->name));
+    }
     const bool is_list = path.ends_with(".txt");
     std::string text = is_list ? "// name, x, y, z in mm\n"
                                : "name,x_mm,y_mm,z_mm,range_mm,azimuth_deg,elevation_deg,"

@@ -130,9 +130,8 @@ VectorXd send(const Grid& grid, const std::string& what, const VectorXd& q,
 
 VectorXd send_via(const Grid& grid, const Constraints& constraints, const VectorXd& via,
                   const std::string& id) {
-    return send(grid, "the via before pose " + quote(id), via, [&](const VectorXd& q) {
-        return describe_violation(constraints, q, Stop::Via);
-    });
+    return send(grid, "the via before pose " + quote(id), via,
+                [&](const VectorXd& q) { return describe_violation(constraints, q, Stop::Via); });
 }
 
 void send_all(std::vector<PlannedPose>& poses, const Constraints& constraints, const Grid& grid) {
@@ -208,10 +207,9 @@ class Route {
                                          name_of(stops_.back()), name_of(stop)));
         }
         if (tour.visits[0].via) {
-            const VectorXd via =
-                send(grid_, "the via back", *tour.visits[0].via, [&](const VectorXd& q) {
-                    return describe_violation(constraints_, q, Stop::Via);
-                });
+            const VectorXd via = send(
+                grid_, "the via back", *tour.visits[0].via,
+                [&](const VectorXd& q) { return describe_violation(constraints_, q, Stop::Via); });
             go({RouteStop::Kind::Via, "", 1, via});
         }
         go(stop);

@@ -1,0 +1,323 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "io/format/atomic_file.hpp"
+#include "posewise/io/robot_programs.hpp"
+#include "program_examples.hpp"
+#include "support/temporary_folder.hpp"
+
+// Programs that people edited: what is read, what is said of it, what is refused.
+
+namespace posewise::io {
+namespace {
+
+using namespace testing;
+
+/// Writes the example, changes it, reads it.
+class Edited {
+  public:
+    explicit Edited(ProgramFormat format)
+        : format_(format),
+          campaign_(cell_with(reversed_joints)),
+          path_(folder_.path(file_of(format))) {
+        write_robot_program(path_, format_, cell_program(campaign_.controller), "", campaign_, {});
+    }
+    Edited& replace(const std::string& what, const std::string& by, const std::string& file = "") {
+        const std::string path = file.empty() ? path_ : path_ + file;
+        std::string text = detail::read_file(path);
+        const std::size_t at = text.find(what);
+        EXPECT_NE(at, std::string::npos) << what << " in\n" << text;
+        if (at != std::string::npos) text.replace(at, what.size(), by);
+        detail::write_file(path, text);
+        return *this;
+    }
+    std::vector<std::string> labels() const {
+        std::vector<std::string> labels;
+        for (const ProgramStop& stop : read_robot_program(path_, format_, campaign_.controller)) {
+            labels.push_back(stop.label);
+        }
+        return labels;
+    }
+    std::string error() const {
+        return input_error_of([&] { labels(); });
+    }
+    const CampaignFile& campaign() const { return campaign_; }
+    const std::string& path() const { return path_; }
+
+  private:
+    TemporaryFolder folder_;
+    ProgramFormat format_;
+    CampaignFile campaign_;
+    std::string path_;
+};
+
+TEST(EditedPrograms, AreReadAsTheyCameFromThePendant) {
+    // A pendant names positions, a comment is added, a move dropped.
+    EXPECT_EQ(Edited(ProgramFormat::Fanuc)
+                  .replace("J P[2] 20% FINE", "J P[2:over table] 5% FINE ACC50")
+                  .replace("P[2]{", "P[2:\"over table\"]{")
+                  .replace("  !p2 ;", "  !p2 ;\n  99:  !look at the hoses ;")
+                  .replace("J P[5] 20% FINE", "//J P[5] 20% FINE")
+                  .labels(),
+              (std::vector<std::string>{"home", "p1", "via", "p2", "home"}));
+    EXPECT_EQ(Edited(ProgramFormat::Kuka)
+                  .replace("; p1\nPTP {A1", ";FOLD PTP p1\n; p1\nPTP {E6AXIS: A1")
+                  .labels()
+                  .size(),
+              6U);
+    EXPECT_EQ(Edited(ProgramFormat::Kuka).replace(",A6 ", ", A6 ").labels().size(), 6U);
+}
+
+TEST(EditedPrograms, AreRefusedWhereTheyDoNotStop) {
+    const auto expect = [](const Edited& edited, const std::string& words) {
+        EXPECT_NE(edited.error().find(words), std::string::npos) << edited.error();
+    };
+    expect(Edited(ProgramFormat::Kuka).replace("\nEND\n", "\n"), "has no END; must be the whole");
+    expect(Edited(ProgramFormat::Abb).replace("ENDMODULE", ""), "has no ENDMODULE");
+    expect(Edited(ProgramFormat::Yaskawa).replace("\nEND", "\n"), "has no END");
+    expect(Edited(ProgramFormat::Fanuc).replace("J P[2] 20% FINE", "J P[2] 20% FINE Offset,PR[1]"),
+           "must have none but ACC");
+    expect(Edited(ProgramFormat::Fanuc).replace("J P[2] 20% FINE", "J P[2] 20% CNT50"),
+           "CELL.LS:12:6: does not stop");
+    expect(Edited(ProgramFormat::Fanuc).replace("J P[2]", "L P[2]"), "is no joint move");
+    expect(Edited(ProgramFormat::Fanuc).replace("J P[2]", "J P[22]"), "without joints");
+    expect(Edited(ProgramFormat::Fanuc).replace("/POS", "/NOPOS"), "has no /POS");
+    expect(Edited(ProgramFormat::Fanuc).replace("J1= ", "J1= x"), "is not a number");
+    expect(Edited(ProgramFormat::Kuka).replace("}\nWAIT", "} C_PTP\nWAIT"), "does not stop");
+    expect(Edited(ProgramFormat::Kuka).replace("PTP {A1", "LIN {A1"), "is no joint move");
+    expect(Edited(ProgramFormat::Kuka).replace("PTP {A1", "PTP {A2"), "where A1 must be");
+    expect(Edited(ProgramFormat::Abb).replace("fine", "z10"), "does not stop");
+    expect(Edited(ProgramFormat::Abb).replace("MoveAbsJ", "MoveJ"), "is no move to joints");
+    expect(Edited(ProgramFormat::Ur).replace("r=0)", "r=0.05)"), "does not stop");
+    expect(Edited(ProgramFormat::Ur).replace("movej([", "movej(p["), "is no joint move to numbers");
+    expect(Edited(ProgramFormat::Yaskawa).replace("PL=0", "PL=3"), "does not stop");
+    expect(Edited(ProgramFormat::Yaskawa).replace("POSTYPE PULSE", "POSTYPE ROBOT"), "PULSE");
+    expect(Edited(ProgramFormat::Yaskawa).replace("MOVJ C00001", "MOVJ C00099"), "does not state");
+    expect(Edited(ProgramFormat::Staubli).replace("joints[1]", "joints[9]", "/start.pgx"),
+           "data have none of");
+    expect(Edited(ProgramFormat::Staubli).replace("j6=\"", "j7=\"", "/cell.dtx"), "5 joints");
+    expect(Edited(ProgramFormat::Ros2).replace("J1", "J9"), "no joint of the controller");
+    expect(Edited(ProgramFormat::Ros2).replace("positions: [", "positions: [.nan, "), "positions");
+    expect(Edited(ProgramFormat::Csv).replace("J1_deg", "J9_deg"), "'J1_deg' is missing");
+    expect(Edited(ProgramFormat::Csv).replace("home,", "home,nan"), "not a number");
+}
+
+/// The example's poses as a plan, v1 to verify.
+Plan plan_of_example(const CampaignFile& campaign) {
+    const ControllerJoints& joints = campaign.controller;
+    Plan plan;
+    for (const ProgramStop& stop : cell_program(joints).stops) {
+        if (!stop.is_measured) continue;
+        PlannedPose& pose = plan.poses.emplace_back();
+        pose.id = stop.label;
+        pose.configuration = joints.to_model(stop.joints);
+    }
+    plan.verification.push_back(plan.poses.back());
+    plan.poses.pop_back();
+    return plan;
+}
+
+ProgramContent content_of(const Edited& edited, ProgramFormat format) {
+    const CampaignFile& campaign = edited.campaign();
+    return program_content(edited.path(),
+                           read_robot_program(edited.path(), format, campaign.controller), campaign,
+                           joint_steps(format, campaign.controller), plan_of_example(campaign));
+}
+
+TEST(EditedPrograms, NameWhatIsMissingMovedAndNew) {
+    Edited edited(ProgramFormat::Csv);
+    const auto content = [&] { return content_of(edited, ProgramFormat::Csv); };
+    const ProgramContent same = content();
+    EXPECT_TRUE(same.dropped.empty() && same.moved.empty() && same.added.empty());
+    EXPECT_EQ(same.purposes, (std::vector<std::string>{"calibrate", "via", "calibrate", "verify"}));
+    edited.replace("\np1,", "\nnew,").replace("\nv1,", "\nv1,1");
+    const ProgramContent other = content();
+    EXPECT_EQ(other.dropped, std::vector<std::string>{"p1"});
+    EXPECT_EQ(other.added, std::vector<std::string>{"new"});
+    ASSERT_EQ(other.moved.size(), 1U);
+    EXPECT_EQ(other.moved[0].id, "v1");
+    EXPECT_EQ(other.moved[0].joint, 0);
+    edited.replace("\nv1,", "\np2,");
+    EXPECT_NE(input_error_of(content).find("visits 'p2' at other joints than before"),
+              std::string::npos);
+}
+
+TEST(EditedPrograms, AreRefusedWhereMovesMayBePassedOver) {
+    using enum ProgramFormat;
+    const auto expect = [](const Edited& edited, const std::string& words) {
+        EXPECT_NE(edited.error().find(words), std::string::npos) << edited.error();
+    };
+    const std::string jumps = ": jumps, so that moves may be passed over or repeated";
+    expect(Edited(Fanuc).replace("  !p1 ;", "  JMP LBL[1] ;"), "CELL.LS:11:8" + jumps);
+    expect(Edited(Fanuc).replace("  !p1 ;", "  IF DI[1]=ON,JMP LBL[1] ;"), jumps);
+    expect(Edited(Fanuc).replace("WAIT   2.00(sec)", "WAIT DI[1]=ON TIMEOUT,LBL[1]"), jumps);
+    expect(
+        Edited(Fanuc).replace("  !p1 ;", "  FOR R[1]=1 TO 5 ;").replace("  !via ;", "  ENDFOR ;"),
+        "CELL.LS:12:6: moves within 'FOR' of line 11, which may pass it over or repeat it");
+    expect(Edited(Fanuc).replace("  !p1 ;", "  IF (DI[1]) THEN ;").replace("  !via ;", "  ENDIF ;"),
+           "moves within 'IF'");
+    expect(Edited(Fanuc).replace("  !p1 ;", "  END ;"), "moves after line 11, 'END', which leaves");
+    expect(Edited(Kuka).replace("; p1", "GOTO there"), "cell.src:11:1" + jumps);
+    expect(Edited(Kuka).replace("; p1", "IF $IN[1] THEN").replace("; via", "ENDIF"), "within 'IF'");
+    expect(Edited(Kuka).replace("; p1", "LOOP").replace("; via", "ENDLOOP"), "within 'LOOP'");
+    expect(Edited(Kuka).replace("; p1", "END\nDEF other( )"), "in another routine");
+    expect(Edited(Abb).replace("! p1", "GOTO there;"), "cell.mod:7:5" + jumps);
+    expect(Edited(Abb).replace("! p1", "IF di1=1 THEN").replace("! via", "ENDIF"), "within 'IF'");
+    expect(Edited(Abb).replace("! p1", "FOR i FROM 1 TO 3 DO").replace("! via", "ENDFOR"), "'FOR'");
+    expect(Edited(Abb).replace("! p1\r\n    Move", "IF di1=1 Move"), "moves under a condition");
+    expect(Edited(Abb).replace("! p1", "RETURN;"), "which leaves the routine");
+    expect(Edited(Ur).replace("# p1", "if get_digital_in(1):").replace("# via", "end"), "'if'");
+    expect(Edited(Ur).replace("# p1", "while True:").replace("# via", "end"), "within 'while'");
+    expect(Edited(Ur).replace("\nend\n", "\n"), "cell.script:1:1: does not end");
+    expect(Edited(Ur).replace("  movej", "  MOVEJ"), "tells capitals apart; must be movej");
+    expect(Edited(Yaskawa).replace("'p1", "JUMP *AGAIN"), jumps);
+    expect(Edited(Yaskawa).replace("'p1", "IFTHEN IN#(1)=ON").replace("'via", "ENDIF"), "'IFTHEN'");
+    expect(Edited(Staubli)
+               .replace("// p1", "if dIn", "/start.pgx")
+               .replace("// via", "endIf", "/start.pgx"),
+           "within 'if'");
+    // What encloses no move is read, as the handshake's loops are.
+    for (const auto& [format, what, by] :
+         {std::tuple{Fanuc, "  !p2 ;", "  IF R[1]=1,CALL LAMP ;\n  99:  !p2 ;\n  99:  LBL[3] ;"},
+          std::tuple{Kuka, "; p2", "IF $IN[1] THEN\nLAMP( )\nENDIF ; GOTO\n; p2"},
+          std::tuple{Abb, "! p2", "IF di1=1 THEN\nLAMP;\nENDIF\n! p2"},
+          std::tuple{Ur, "# p2", "while not get_digital_in(0): # loop\nsync()\nend\n# p2"}}) {
+        EXPECT_EQ(Edited(format).replace(what, by).labels(), Edited(format).labels());
+    }
+}
+
+TEST(EditedPrograms, MoveNoAxisThatThePlanDoesNotKnow) {
+    using enum ProgramFormat;
+    const auto expect = [](const Edited& edited, const std::string& words) {
+        EXPECT_NE(edited.error().find(words), std::string::npos) << edited.error();
+    };
+    expect(Edited(Kuka).replace("}\n; p1", ",E1 120.5}\n; p1"),
+           "cell.src:10:1: has 'E1 120.5', an axis that is not of the robot's joints; must be 0");
+    EXPECT_EQ(Edited(Kuka).replace("}\n; p1", ",E1 0.0,E2 0}\n; p1").labels().size(), 6U);
+    expect(Edited(Abb).replace("[9E9,", "[35.5,"), "moves an external axis to 35.5");
+    EXPECT_EQ(Edited(Abb).replace("[9E9,9E9,", "[9E+09,0,").labels().size(), 6U);
+    const std::string last = "J6=     0.000 deg\n";
+    expect(Edited(Fanuc).replace(last, "J6=     0.000 deg,\n\tE1=    12.500 mm\n"),
+           "has E1 at 12.500, an axis");
+    EXPECT_EQ(
+        Edited(Fanuc).replace(last, "J6=     0.000 deg,\n\tE1=     0.000 mm\n").labels().size(),
+        6U);
+    expect(Edited(Fanuc).replace(last, last + "   GP2:\n\tUF : 0, UT : 1,\n\tJ1= 5.0 deg\n"),
+           "has J1 at 5.0");
+    expect(Edited(Yaskawa).replace("C00001 VJ", "C00001 EC00001 VJ"), "must have none but VJ");
+}
+
+TEST(EditedPrograms, AreReadStatementByStatement) {
+    using enum ProgramFormat;
+    Edited abb(Abb);
+    abb.replace(";\r\n    ! p1\r\n", ";").replace("! via\r\n", "WaitTime 1; ! via\r\n");
+    EXPECT_EQ(abb.labels(), (std::vector<std::string>{"home", "p1", "via", "p2", "v1", "home"}));
+    const auto refuses = [](const std::string& arguments) {
+        return Edited(Ur)
+                   .replace("a=0.5, v=0.4189, r=0", arguments)
+                   .error()
+                   .find("does not stop") != std::string::npos;
+    };
+    EXPECT_TRUE(refuses("a=0.5, v=0.4, r = 0.05"));
+    EXPECT_TRUE(refuses("0.5, 0.4, 0, 0.05"));
+    EXPECT_FALSE(refuses("0.5, 0.4"));
+    EXPECT_FALSE(refuses("0.5, 0.4, 0, 0"));
+    EXPECT_NE(Edited(Staubli)
+                  .replace("blend=\"off\"", "blend=\"joint\"", "/cell.dtx")
+                  .error()
+                  .find("must have blend=\"off\""),
+              std::string::npos);
+}
+
+TEST(EditedPrograms, AreRefusedWhereTheyWereCutOff) {
+    using enum ProgramFormat;
+    const TemporaryFolder folder;
+    const CampaignFile campaign = cell_with(reversed_joints);
+    for (const ProgramFormat format : {Fanuc, Kuka, Abb, Ur, Yaskawa, Staubli}) {
+        const std::string path = folder.path(file_of(format));
+        const RobotProgram program = cell_program(campaign.controller);
+        write_robot_program(path, format, program, "", campaign, {});
+        for (const std::string& file : program_files(path, format, program)) {
+            if (file.ends_with(".dat")) continue;  // which is not read
+            const std::string text = detail::read_file(file);
+            // Of the last lines at least one word is missing.
+            for (const double part : {0.2, 0.5, 0.9, 1.0}) {
+                const auto size = static_cast<std::size_t>(part * static_cast<double>(text.size()));
+                detail::write_file(file, text.substr(0, std::min(size, text.size() - 12)));
+                EXPECT_THROW(read_robot_program(path, format, campaign.controller), InputError)
+                    << file << ' ' << part;
+            }
+            detail::write_file(file, text);
+        }
+    }
+}
+
+TEST(EditedPrograms, KeepPosesWhoseNameWasLost) {
+    using enum ProgramFormat;
+    for (const auto& [format, comment] :
+         {std::pair{Fanuc, "  !p2 ;"}, std::pair{Kuka, "; p2\n"}, std::pair{Abb, "! p2\r\n"},
+          std::pair{Ur, "# p2\n"}, std::pair{Yaskawa, "'p2\r\n"}}) {
+        Edited edited(format);
+        edited.replace(comment, format == Fanuc ? "  UTOOL_NUM=1 ;" : "");
+        const ProgramContent content = content_of(edited, format);
+        EXPECT_TRUE(content.dropped.empty()) << program_format_name(format);
+        EXPECT_EQ(content.ids, (std::vector<std::string>{"p1", "p2.via", "p2", "v1"}));
+        // ABB and UR show the name, too.
+        const bool is_shown = format == Abb || format == Ur;
+        EXPECT_EQ(content.recognised,
+                  is_shown ? std::vector<std::string>{} : std::vector<std::string>{"p2"})
+            << program_format_name(format);
+    }
+    // Waits elsewhere: not a via.
+    Edited moved(Kuka);
+    moved.replace("; p2\nPTP {A1 -32", "PTP {A1 -31");
+    const ProgramContent content = content_of(moved, Kuka);
+    EXPECT_EQ(content.dropped, std::vector<std::string>{"p2"});
+    EXPECT_EQ(content.unnamed, std::vector<std::string>{"stop4"});
+    EXPECT_EQ(content.purposes,
+              (std::vector<std::string>{"calibrate", "via", "calibrate", "verify"}));
+}
+
+TEST(EditedPrograms, SayWhatIsVisitedTwice) {
+    Edited edited(ProgramFormat::Csv);
+    const std::string text = detail::read_file(edited.path());
+    const std::string row =
+        text.substr(text.find("\np1,"), text.find("\nvia,") - text.find("\np1,"));
+    edited.replace("\nvia,", row + "\nvia,");
+    const ProgramContent content = content_of(edited, ProgramFormat::Csv);
+    EXPECT_EQ(content.visits, 1);
+    ASSERT_EQ(content.other_visits.size(), 1U);
+    EXPECT_EQ(content.other_visits[0], (std::pair<std::string, Index>{"p1", 2}));
+    EXPECT_TRUE(content_of(Edited(ProgramFormat::Csv), ProgramFormat::Csv).other_visits.empty());
+}
+
+TEST(EditedPrograms, AreHeldToLimitsSumsAndTheCell) {
+    const auto faults = [](const std::string& pose) {
+        const TemporaryFolder folder;
+        CampaignFile campaign = cell_with("{}");
+        VectorXd coefficients = VectorXd::Zero(6);
+        coefficients << 0, -1, 1, 0, 0, 0;
+        campaign.cell.joint_sums = {{"q3 - q2", coefficients, {to_radians(-80), to_radians(90)}}};
+        campaign.cell.sight.reset();
+        const std::string path = folder.path("a.csv");
+        detail::write_file(path, "name,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n" + pose + '\n');
+        const auto format = ProgramFormat::Csv;
+        const ProgramContent content =
+            program_content(path, read_robot_program(path, format, campaign.controller), campaign,
+                            joint_steps(format, campaign.controller), std::nullopt);
+        return content.faults.empty() ? std::string() : content.faults[0];
+    };
+    EXPECT_EQ(faults("p1,0,-30,0,0,0,0"), "");
+    EXPECT_NE(faults("p1,0,-30,0,0,0,9999").find("pose 'p1' is beyond the joint limits"),
+              std::string::npos);
+    EXPECT_NE(faults("p1,0,-30,0,0,0,9999").find("q6 is 9999 deg, must be from"),
+              std::string::npos);
+    EXPECT_NE(faults("p1,0,-47,57,0,0,0").find("joint_sums: q3 - q2 is 104 deg, must be from -7"),
+              std::string::npos)
+        << faults("p1,0,-47,57,0,0,0");
+    EXPECT_NE(faults("via,0,58,-20,0,0,0").find("a via does not meet"), std::string::npos)
+        << faults("via,0,58,-20,0,0,0");
+}
+
+}  // namespace
+}  // namespace posewise::io
