@@ -112,9 +112,10 @@ std::string describe_order(const Tour& tour, double random_order) {
     const std::string nearest = detail::format_fixed(tour.nearest_neighbour_time, 1);
     std::string text =
         random_order > 0
-            ? fmt::format("{} s, at random; the shortest found: {} s; to the nearest pose each: "
-                          "{} s",
-                          time, detail::format_fixed(tour.shortest_time, 1), nearest)
+            ? fmt::format(
+                  "{} s, at random; the shortest found: {} s; to the nearest pose each: "
+                  "{} s",
+                  time, detail::format_fixed(tour.shortest_time, 1), nearest)
             : fmt::format(
                   "{} s, {} % shorter than as planned ({} s); to the nearest pose each: {} s", time,
                   detail::format_fixed(100 * (1 - tour.time / tour.planning_order_time), 0),
