@@ -40,8 +40,7 @@ std::string describe_limits(const Constraints& constraints, const VectorXd& q, S
         if (!(clearance < least)) continue;
         least = clearance;
         const Joint& joint = constraints.robot().joint(j);
-        text = detail::describe_range(joint.name, joint.motion, q[j], limits.lower,
-                                      limits.upper);
+        text = detail::describe_range(joint.name, joint.motion, q[j], limits.lower, limits.upper);
     }
     return text;
 }

@@ -61,7 +61,7 @@ TEST_F(PlanCommand, IsTheSameForOneThreadAndTwo) {
 TEST_F(PlanCommand, RepairsAPlanWithoutMovingTheOthers) {
     run_well("plan " + fanuc_design + " -k 10" + quick + "-o p.json");
     const std::string text =
-        run_well("plan " + fanuc_design + quick + "--plan p.json --drop p2,p5 -o r.json");
+        run_well("plan " + fanuc_design + quick + "--plan p.json --drop 'p2, p5' -o r.json");
     EXPECT_NE(text.find("2 new, 8 kept"), std::string::npos) << text;
     const auto before = json_of("p.json").at("poses");
     const auto after = json_of("r.json").at("poses");

@@ -133,6 +133,13 @@ TEST(PlanTour, IsAtLeastAQuarterShorterThanThePlanningOrder) {
     RecordProperty("tour_s", std::to_string(tour.time));
     EXPECT_LT(tour.time, 0.75 * tour.planning_order_time);
     EXPECT_EQ(tour.blocked_count, 0);
+    EXPECT_NEAR(tour.shortest_time, tour.time, 1e-9);
+    TourOptions options;
+    options.random_order = 2;
+    const Tour random = plan_tour(constraints, poses, options);
+    EXPECT_NEAR(random.shortest_time, tour.time, 1e-9);
+    EXPECT_GT(random.time, 1.2 * tour.time);
+    EXPECT_LE(random.time, 2 * tour.time + 1e-9);
     VectorXd here = constraints.cell().home;
     double time = 0;
     for (const Visit& visit : tour.visits) {

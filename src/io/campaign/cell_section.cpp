@@ -7,8 +7,8 @@
 #include "element_notation.hpp"
 #include "io/format/text.hpp"
 #include "keys.hpp"
-#include "model/halton.hpp"
 #include "measurement/cell_check.hpp"
+#include "model/halton.hpp"
 #include "model/joint_limits.hpp"
 
 namespace posewise::detail {
@@ -236,10 +236,11 @@ VectorXd read_rates(const YamlMap& map, const std::string& name, const std::stri
         if (rates.size() != 0) throw stated->error("is stated in two units; keep one");
         rates = read_joint_angles({*stated, find_unit(unit)}, robot);
         if (!(rates.array() > 0).all()) throw stated->error("must be positive for every joint");
-        constexpr double fastest = 35;  // rad/s, 2000 deg/s
+        constexpr double fastest = 35;                     // rad/s, 2000 deg/s
         constexpr double slowest_rise = to_radians(0.01);  // rad/s^2
         constexpr double fastest_rise = to_radians(1e5);
-        if (per == "s2" && !(rates.minCoeff() >= slowest_rise && rates.maxCoeff() <= fastest_rise)) {
+        if (per == "s2" &&
+            !(rates.minCoeff() >= slowest_rise && rates.maxCoeff() <= fastest_rise)) {
             throw stated->error("is beyond 0.01 to 100000 deg/s^2, which no joint has; is it in " +
                                 std::string(unit) + "/s^2?");
         }
