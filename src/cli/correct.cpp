@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <filesystem>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "commands.hpp"
 #include "common.hpp"
@@ -10,8 +12,11 @@
 #include "estimates.hpp"
 #include "files.hpp"
 #include "options.hpp"
+#include "plan_inputs.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/io/documents.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/io/program_targets.hpp"
 #include "posewise/report/reports.hpp"
 
 namespace posewise::cli {
@@ -20,6 +25,7 @@ namespace {
 constexpr const char* correct_footer = R"(
 Example:
   posewise correct campaign.yaml estimate.json --poses program.csv -o corrected.csv
+  posewise correct campaign.yaml estimate.json --poses WELD.LS --for fanuc -o corrected/WELD.LS
 
 For a controller that knows only the nominal robot: joint values that bring the calibrated robot (the
 estimate, from calibrate --out) to where the nominal robot would be at the configurations of the
@@ -36,6 +42,12 @@ With six joints or more position and orientation are both brought to zero, by th
 of joints if there are several ways. With fewer the sum of squares is least, in which 1 mrad counts as
 --mm-per-mrad; at 0 only the position of --tool-mm counts.
 
+--for corrects a program that exists: of FANUC (.ls), KUKA (.src or .dat, each by itself), ABB (.mod) or
+Universal Robots (.script). Its targets in joint values, as the campaign's controller counts them, are
+replaced in place; not another byte changes. Targets that are not joint values (Cartesian ones, position
+registers) and those that a move adds to others (offsets, INC) stay as they are and are named: they still
+are the nominal robot's. Joints are written in the digits of the file.
+
 Where joints are held in most configurations and over half of their error is left, nothing is written
 and the exit code is 3; --force writes it all the same.)";
 
@@ -44,6 +56,7 @@ struct CorrectArguments {
     std::string estimate;
     std::string poses;
     std::string out;
+    std::string format;  ///< of the program that `poses` is; empty: configurations (CSV)
     std::string base = "estimate";
     std::array<double, 3> tool_mm{};
     double mm_per_mrad = 1;
@@ -76,12 +89,82 @@ void check_corrected(const CorrectArguments& arguments, const CorrectedPoses& co
                                     arguments.out.empty() ? "" : "nothing was written, "));
 }
 
+/// A program of a controller whose targets are to be corrected.
+struct ProgramToCorrect {
+    io::ProgramFormat format;
+    io::TargetProgram program;
+};
+
+void warn_of_others(const CorrectArguments& arguments, const io::TargetProgram& program) {
+    if (program.others.empty()) return;
+    print_warning(fmt::format(
+        "{}:{}: is not corrected, {}: no joint values of all joints, or added to other targets",
+        arguments.poses, program.others.front(),
+        program.others.size() == 1
+            ? "the only one"
+            : fmt::format("nor are {} more lines", program.others.size() - 1)));
+}
+
+/// FANUC's and KUKA's files are called as the program in them.
+void warn_of_name(const CorrectArguments& arguments, io::ProgramFormat format) {
+    if (arguments.out.empty()) return;
+    if (format != io::ProgramFormat::Fanuc && format != io::ProgramFormat::Kuka) return;
+    const std::string name = std::filesystem::path(arguments.poses).filename().string();
+    if (std::filesystem::path(arguments.out).filename() == name) return;
+    print_warning(
+        fmt::format("{}: has another name than the program in it; write it to another folder as {}",
+                    arguments.out, name));
+}
+
+ProgramToCorrect read_program_to_correct(const CorrectArguments& arguments,
+                                         const io::CampaignFile& file) {
+    const io::ProgramFormat format = io::parse_program_format(arguments.format);
+    if (file.robot.configuration_size() != file.robot.joint_count()) {
+        throw input_error_at({file.path},
+                             "measures torques with each configuration, which no program holds");
+    }
+    program_steps(format, file);
+    return {format, io::read_program_targets(arguments.poses, format, file.controller)};
+}
+
+/// The targets in the model's joints.
+io::Configurations configurations_of(const io::TargetProgram& program,
+                                     const io::CampaignFile& file) {
+    io::Configurations poses;
+    poses.joints.resize(std::ssize(program.targets), file.robot.joint_count());
+    for (std::size_t k = 0; k < program.targets.size(); ++k) {
+        poses.ids.push_back(program.targets[k].id);
+        poses.joints.row(static_cast<Index>(k)) =
+            file.controller.to_model(program.targets[k].joints).transpose();
+    }
+    return poses;
+}
+
+void write_corrected(const CorrectArguments& arguments, const io::CampaignFile& file,
+                     const io::Configurations& poses, const CorrectedPoses& corrected,
+                     const std::optional<ProgramToCorrect>& program) {
+    if (arguments.out.empty()) return;
+    if (!program) {
+        return io::write_corrections_csv(arguments.out, file, poses.ids, corrected.corrections,
+                                         poses.purposes);
+    }
+    std::vector<VectorXd> values;
+    for (const Correction& correction : corrected.corrections) {
+        values.push_back(file.controller.to_controller(correction.joints));
+    }
+    io::write_program_targets(arguments.out, program->program, program->format, file.controller,
+                              values);
+}
+
 void correct(const CorrectArguments& arguments, const CommonOptions& common) {
     const io::CampaignFile file = io::read_campaign(arguments.paths.campaign);
     check_outputs({&file}, {arguments.estimate, arguments.poses}, {arguments.out}, common);
     const Parameters found =
         read_usable_estimate(arguments.estimate, file, arguments.is_forced).parameters;
-    const io::Configurations poses = io::read_program(arguments.poses, file);
+    std::optional<ProgramToCorrect> program;
+    if (!arguments.format.empty()) program = read_program_to_correct(arguments, file);
+    const io::Configurations poses = program ? configurations_of(program->program, file)
+                                             : io::read_program(arguments.poses, file);
     io::check_within_limits(arguments.poses, file, poses);
     const auto base =
         arguments.base == "campaign" ? CorrectionBase::Campaign : CorrectionBase::Estimate;
@@ -97,13 +180,14 @@ void correct(const CorrectArguments& arguments, const CommonOptions& common) {
     if (!corrected.collisions.empty()) {
         print_warning(arguments.poses + ": " + corrected.collisions);
     }
-    if (!arguments.out.empty()) {
-        io::write_corrections_csv(arguments.out, file, poses.ids, corrected.corrections,
-                                  poses.purposes);
+    if (program) {
+        warn_of_others(arguments, program->program);
+        warn_of_name(arguments, program->format);
     }
+    write_corrected(arguments, file, poses, corrected, program);
     if (common.json) return print_document(io::to_json(corrected, file));
     print(fmt::format("{}: {} corrected{}\n", file.name,
-                      detail::count_of(std::ssize(poses.ids), "configuration"),
+                      detail::count_of(std::ssize(poses.ids), program ? "target" : "configuration"),
                       arguments.out.empty() ? "" : ": " + detail::escape_controls(arguments.out)));
     print(format(corrected));
 }
@@ -111,10 +195,16 @@ void correct(const CorrectArguments& arguments, const CommonOptions& common) {
 void add_correct_options(CLI::App& command, CorrectArguments& arguments) {
     command
         .add_option("--poses", arguments.poses,
-                    "Nominal configurations (CSV), as plan --csv writes it")
+                    "Nominal configurations (CSV), as plan --csv writes it; with --for a program")
         ->required()
         ->check(file_name());
-    command.add_option("-o,--out", arguments.out, "Write the corrected configurations (CSV)")
+    command
+        .add_option("--for", arguments.format,
+                    "Kind of controller whose program is to be corrected, in place")
+        ->check(CLI::IsMember(io::target_format_names()));
+    command
+        .add_option("-o,--out", arguments.out,
+                    "Write the corrected configurations (CSV), or the corrected program")
         ->check(file_name());
     command
         .add_option("--base", arguments.base,

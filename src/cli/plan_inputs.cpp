@@ -1,5 +1,7 @@
 #include "plan_inputs.hpp"
 
+#include <fmt/format.h>
+
 #include "blocks_options.hpp"
 #include "common.hpp"
 #include "files.hpp"
@@ -95,6 +97,21 @@ PlanningOptions read_planning_inputs(const PlanRequest& request, const io::Campa
         options.workspace = io::read_configurations(sources.workspace, campaign).joints;
     }
     return options;
+}
+
+VectorXd program_steps(io::ProgramFormat format, const io::CampaignFile& campaign) {
+    const std::string& maker = campaign.controller_maker;
+    const std::string_view name = io::program_format_name(format);
+    if (!maker.empty() && maker != name && format != io::ProgramFormat::Csv) {
+        throw input_error_at(
+            {campaign.path},
+            fmt::format("controller.maker is {}, the program is for {}; must be of "
+                        "its controller, or be left out where that counts joints "
+                        "as the model does",
+                        maker, name));
+    }
+    return compute_from(campaign.path,
+                        [&] { return io::joint_steps(format, campaign.controller); });
 }
 
 }  // namespace posewise::cli

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "posewise/io/campaign_file.hpp"
+#include "posewise/io/robot_programs.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/planning.hpp"
 
@@ -24,5 +25,9 @@ ChoiceInputs read_choice_inputs(const PlanRequest& request, CandidateKind kind, 
 
 /// Likewise of a continuous plan, but for the plan to repair.
 PlanningOptions read_planning_inputs(const PlanRequest& request, const io::CampaignFile& campaign);
+
+/// The steps of a program's joints. Throws InputError if the campaign's controller is another's:
+/// drivers of ROS, for one, take the model's joints, not those of FANUC's pendant.
+VectorXd program_steps(io::ProgramFormat format, const io::CampaignFile& campaign);
 
 }  // namespace posewise::cli

@@ -173,23 +173,6 @@ std::optional<RoundingLoss> find_loss(const PlanAndCampaign& both, const Plan& s
     return rounding_loss(plan, sent, both.campaign, inputs.candidates, inputs.options);
 }
 
-/// The steps of the program's joints. Drivers of ROS, for one, take the model's joints, not those
-/// of FANUC's pendant.
-VectorXd steps_of(io::ProgramFormat format, const io::CampaignFile& campaign) {
-    const std::string& maker = campaign.controller_maker;
-    const std::string_view name = io::program_format_name(format);
-    if (!maker.empty() && maker != name && format != io::ProgramFormat::Csv) {
-        throw input_error_at(
-            {campaign.path},
-            fmt::format("controller.maker is {}, the program is for {}; must be of "
-                        "its controller, or be left out where that counts joints "
-                        "as the model does",
-                        maker, name));
-    }
-    return compute_from(campaign.path,
-                        [&] { return io::joint_steps(format, campaign.controller); });
-}
-
 std::string describe(const RoundingLoss& loss) {
     std::string text;
     if (loss.largest_turn > 0) {
@@ -243,7 +226,7 @@ void write_program(const ProgramArguments& arguments, const CommonOptions& commo
     const io::ProgramFormat format = io::parse_program_format(arguments.format);
     const PlanAndCampaign both = read_both(arguments);
     const ControllerJoints& controller = both.campaign.controller;
-    const VectorXd steps = steps_of(format, both.campaign);
+    const VectorXd steps = program_steps(format, both.campaign);
     const Plan sent = compute_from(
         arguments.plan, [&] { return sent_plan(both.plan, both.campaign, controller, steps); });
     const std::vector<RouteStop> route = compute_from(arguments.plan, [&] {
@@ -341,7 +324,7 @@ void read_program(const ProgramArguments& arguments, const CommonOptions& common
         throw input_error_at({campaign.path},
                              "measures torques with each configuration, which no program holds");
     }
-    const VectorXd steps = steps_of(format, campaign);
+    const VectorXd steps = program_steps(format, campaign);
     if (sent) {
         sent = compute_from(arguments.plan,
                             [&] { return sent_plan(*sent, campaign, campaign.controller, steps); });

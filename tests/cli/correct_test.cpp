@@ -89,6 +89,35 @@ TEST_F(Correct, NamesTheJointThatIsHeld) {
     EXPECT_EQ(number_behind(placed, "position max/mm", 1), 0);
 }
 
+TEST_F(Correct, ReplacesTheJointTargetsOfAProgram) {
+    const std::string program =
+        "def weld():\n  # by hand\n  movej([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], a=1.4, v=1.05, r=0.02)\n"
+        "  movel(p[0.5, 0, 0.8, 0, 3.14, 0])\n  movej([-1.2, -0.3, 0.1, -0.7, -1.1, 0], "
+        "a=1)\nend\n";
+    write_text("weld.script", program);
+    const Outcome outcome = run(correct_ + "weld.script --for ur -o corrected.script");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("2 targets corrected: corrected.script"), std::string::npos)
+        << outcome.out;
+    EXPECT_NE(outcome.err.find("weld.script:4: is not corrected, the only one"), std::string::npos)
+        << outcome.err;
+    EXPECT_LT(number_behind(outcome.out, "position RMS/mm", 1),
+              0.01 * number_behind(outcome.out, "position RMS/mm"));
+    std::istringstream before(program);
+    std::istringstream after(text_of("corrected.script"));
+    std::string was;
+    std::string is;
+    for (int line = 1; std::getline(before, was); ++line) {
+        ASSERT_TRUE(std::getline(after, is));
+        EXPECT_EQ(was != is, line == 3 || line == 5) << is;
+    }
+    EXPECT_FALSE(std::getline(after, is));
+    expect_input_error(correct_ + "weld.script --for fanuc -o c.ls", "has no /POS");
+    write_text("far.script", "movej([0, 3, 0, 0, 0, 0])\n");
+    expect_input_error(correct_ + "far.script --for ur -o c.script",
+                       "far.script: configuration '1:8' is beyond the joint limits: q2 is ");
+}
+
 TEST_F(Correct, RefusesWhatItCannotUse) {
     write_text("p.csv",
                "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\na,10,20,30,40,50,60\n"

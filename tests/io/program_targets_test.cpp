@@ -1,0 +1,253 @@
+#include "posewise/io/program_targets.hpp"
+
+#include <gtest/gtest.h>
+
+#include "io/format/atomic_file.hpp"
+#include "posewise/measurement/campaign.hpp"
+#include "posewise/task/correction.hpp"
+#include "program_examples.hpp"
+#include "support/sweep.hpp"
+#include "support/temporary_folder.hpp"
+
+// Joint targets of programs that exist: found, replaced, and nothing else touched.
+
+namespace posewise::io {
+namespace {
+
+using namespace testing;
+
+constexpr ProgramFormat target_formats[] = {ProgramFormat::Fanuc, ProgramFormat::Kuka,
+                                            ProgramFormat::Abb, ProgramFormat::Ur};
+
+/// What is not a target's value.
+std::string without_targets(const TargetProgram& program) {
+    std::string text;
+    std::size_t done = 0;
+    for (const JointTarget& target : program.targets) {
+        for (const auto& [begin, end] : target.values) {
+            text.append(program.content, done, begin - done);
+            while (text.ends_with(' ')) text.pop_back();  // columns that are kept
+            text += '#';
+            done = end;
+        }
+    }
+    return text.append(program.content, done);
+}
+
+std::vector<VectorXd> values_of(const TargetProgram& program) {
+    std::vector<VectorXd> values;
+    for (const JointTarget& target : program.targets) values.push_back(target.joints);
+    return values;
+}
+
+std::vector<std::string> ids_of(const TargetProgram& program) {
+    std::vector<std::string> ids;
+    for (const JointTarget& target : program.targets) ids.push_back(target.id);
+    return ids;
+}
+
+/// A program that someone wrote for a robot that counts joints as the model.
+class Written {
+  public:
+    Written(ProgramFormat format, const std::string& text)
+        : format_(format), path_(folder_.write(file_of(format), text)) {}
+    TargetProgram read() const {
+        return read_program_targets(path_, format_, campaign_.controller);
+    }
+    std::string replaced(const std::vector<VectorXd>& values) const {
+        return replace_targets(read(), format_, campaign_.controller, values);
+    }
+    std::string error() const {
+        return input_error_of([&] { read(); });
+    }
+
+  private:
+    TemporaryFolder folder_;
+    ProgramFormat format_;
+    std::string path_;
+    CampaignFile campaign_ = cell_with("{}");
+};
+
+VectorXd degrees(const std::vector<double>& values) {
+    return Eigen::Map<const VectorXd>(values.data(), std::ssize(values)) * to_radians(1);
+}
+
+TEST(ProgramTargets, AreReplacedAndNothingElse) {
+    const TemporaryFolder folder;
+    const CampaignFile campaign = cell_with(reversed_joints);
+    const ControllerJoints& joints = campaign.controller;
+    for (const ProgramFormat format : target_formats) {
+        const VectorXd steps = joint_steps(format, joints);
+        const std::string path = folder.path(file_of(format));
+        for (Index i = 0; i < std::max<Index>(sweep_count() / 20, 5); ++i) {
+            RandomStream stream(5, static_cast<std::uint64_t>(i));
+            RobotProgram program = cell_program(joints);
+            for (ProgramStop& stop : program.stops) stop.joints = random_vector(stream, 6, 4);
+            program.handshake = i % 2 == 0 ? Handshake::Pause : Handshake::Io;
+            write_robot_program(path, format, program, "", campaign, {});
+            const TargetProgram read = read_program_targets(path, format, joints);
+            ASSERT_EQ(read.targets.size(), program.stops.size());
+            EXPECT_TRUE(read.others.empty());
+            std::vector<VectorXd> values = values_of(read);
+            EXPECT_EQ(replace_targets(read, format, joints, values), read.content);
+            for (VectorXd& value : values) value += random_vector(stream, 6, 0.02);
+            write_program_targets(path, read, format, joints, values);
+            const TargetProgram back = read_program_targets(path, format, joints);
+            EXPECT_EQ(without_targets(back), without_targets(read));
+            for (std::size_t k = 0; k < values.size(); ++k) {
+                const VectorXd rounding = back.targets[k].joints - values[k];
+                EXPECT_LE(rounding.cwiseQuotient(steps).cwiseAbs().maxCoeff(), 0.5 + 1e-6);
+            }
+        }
+    }
+}
+
+TEST(ProgramTargets, OfFanucAreItsPositionsInJoints) {
+    const Written program(
+        ProgramFormat::Fanuc,
+        "/PROG  WELD\n/ATTR\n/MN\n   1:  LBL[1] ;\n   2:J P[1] 100% FINE    ;\n"
+        "   3:L P[2] 250mm/sec CNT50    ;\n   4:J P[3] 10% FINE INC    ;\n   5:J PR[4] 10% FINE ;\n"
+        "   6:  JMP LBL[1] ;\n/POS\n"
+        "P[1:\"J1= home\"]{\n   GP1:\n\tUF : 0, UT : 1,\n\tJ1=     0.000 deg,\tJ2=   -30.000 deg,"
+        "\tJ3=    30.000 deg,\n\tJ4=     0.000 deg,\tJ5=     0.000 deg,\tJ6=     0.000 deg,\n"
+        "\tE1=   500.000  mm\n   GP2:\n\tUF : 0, UT : 1,\n\tJ1=     7.000 deg\n};\n"
+        "P[2]{\n   GP1:\n\tUF : 0, UT : 1,\t\tCONFIG : 'N U T, 0, 0, 0',\n\tX =  1807.000  mm,\tY "
+        "= "
+        "    0.000  mm,\tZ =   855.000  mm,\n\tW =   180.000 deg,\tP =     0.000 deg,\tR =     "
+        "0.000 "
+        "deg\n};\n"
+        "P[3]{\n   GP1:\n\tUF : 0, UT : 1,\n\tJ1=     5.000 deg,\tJ2=     0.000 deg,\tJ3=     "
+        "0.000 "
+        "deg,\n\tJ4=     0.000 deg,\tJ5=     0.000 deg,\tJ6=     0.000 deg\n};\n/END\n");
+    EXPECT_EQ(ids_of(program.read()), std::vector<std::string>{"P[1]"});
+    EXPECT_EQ(program.read().others, (std::vector<long>{8, 21, 27}));
+    EXPECT_LT((program.read().targets[0].joints - degrees({0, -30, 30, 0, 0, 0})).norm(), 1e-12);
+    const std::string text = program.replaced({degrees({0.0123, -30.5, 130.25, 0, -0.0001, 0})});
+    EXPECT_NE(
+        text.find("\tJ1=     0.012 deg,\tJ2=   -30.500 deg,\tJ3=   130.250 deg,\n\tJ4=     "
+                  "0.000 deg,\tJ5=     0.000 deg,\tJ6=     0.000 deg,\n\tE1=   500.000  mm\n"),
+        std::string::npos)
+        << text;
+    EXPECT_NE(Written(ProgramFormat::Fanuc, "/MN\n/POS\nP[1]{\n GP1:\n J1= 1.0 deg\n};\n/END\n")
+                  .error()
+                  .find("states 1 joints; must state 6"),
+              std::string::npos);
+    EXPECT_NE(Written(ProgramFormat::Fanuc, "/MN\n/POS\nP[1]{\n GP1:\n").error().find("no /END"),
+              std::string::npos);
+}
+
+TEST(ProgramTargets, OfKukaAreAggregatesOfAxes) {
+    const Written program(
+        ProgramFormat::Kuka,
+        "DEF weld( )\r\n; PTP {A1 1,A2 2,A3 3,A4 4,A5 5,A6 6}\r\n"
+        "PTP {A1 0.0,A2 -90,A3 90.12345,A4 0,A5 0,A6 0,E1 100.0} C_PTP\r\n"
+        "DECL E6AXIS XHOME={A1 1.0,A2 -90.0,A3 90.0,A4 0.0,A5 10.0,A6 0.0,E1 0.0}\r\n"
+        "LIN {X 1500.0,Y 0.0,Z 800.0,A 0.0,B 90.0,C 0.0}\r\nPTP {A1 5.0}\r\n"
+        "PTP_REL {A1 1,A2 2,A3 3,A4 4,A5 5,A6 6}\r\n$BASE={X 0,Y 0,Z 0,A 0,B 0,C 0}\r\nEND\r\n");
+    EXPECT_EQ(ids_of(program.read()), (std::vector<std::string>{"3:9", "4:23"}));
+    EXPECT_EQ(program.read().others, (std::vector<long>{5, 6, 7}));
+    const std::string text = program.replaced(
+        {degrees({0.5, -90, 90.1, 0, 0, 0.000001}), degrees({1, -90, 90, 0, 10.12345678, 0})});
+    EXPECT_NE(
+        text.find("\r\nPTP {A1 0.50000,A2 -90,A3 90.10000,A4 0,A5 0,A6 0,E1 100.0} C_PTP\r\n"),
+        std::string::npos)
+        << text;
+    EXPECT_NE(text.find("{A1 1.0,A2 -90.0,A3 90.0,A4 0.0,A5 10.12346,A6 0.0,E1 0.0}\r\n"),
+              std::string::npos)
+        << text;
+}
+
+TEST(ProgramTargets, OfAbbAreJointtargets) {
+    const Written program(
+        ProgramFormat::Abb,
+        "MODULE weld\n  CONST jointtarget home:=[[0,-30,30.5,0,0,0],\n    "
+        "[9E9,9E9,9E9,9E9,9E9,9E9]];"
+        "\n  PERS robtarget p1:=[[1500,0,800],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n"
+        "  PERS tooldata torch:=[TRUE,[[0,0,100],[1,0,0,0]],[5,[0,0,50],[1,0,0,0],0,0,0]];\n"
+        "  PROC main()\n    ! MoveAbsJ [[1,2,3,4,5,6],[9E9,9E9,9E9,9E9,9E9,9E9]]\n"
+        "    IF di1=1 MoveAbsJ [[ 1.0, 2.0 ,3.0,4.0,5.0,6.0 ],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,z50,"
+        "tool0;\n    TPWrite \"[[1,2,3,4,5,6],[\";\n    MoveJ Offs(p1,0,0,5),v100,fine,torch;\n"
+        "  ENDPROC\nENDMODULE\n");
+    EXPECT_EQ(ids_of(program.read()), (std::vector<std::string>{"2:29", "8:26"}));
+    EXPECT_EQ(program.read().others, (std::vector<long>{4}));
+    const std::string text = program.replaced(
+        {degrees({0.5, -30, 30.5, 0, 0, 0}), degrees({1, 2, 3, 4.00004, 5, -6.25})});
+    EXPECT_NE(text.find("home:=[[0.5000,-30,30.5,0,0,0],\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("[[ 1.0, 2.0 ,3.0,4.0,5.0,-6.2500 ],["), std::string::npos) << text;
+}
+
+TEST(ProgramTargets, OfUniversalRobotsAreWhatMovesTake) {
+    const Written program(
+        ProgramFormat::Ur,
+        "def weld():\n  # movej([0, 1, 2, 3, 4, 5])\n  global home = [0, -1.57, 0.1, 0, 0, 0]\n"
+        "  weights = [1, 2, 3, 4, 5, 6]\n  while True:\n    movej(home, a=1.4, v=1.05)\n"
+        "    movel([0.1234567, -1.2, 0.3, 0, 0, 0], a=0.5, v=0.25, r=0.01)\n"
+        "    movel(p[0.5, 0, 0.8, 0, 3.14, 0])\n    movej([d2r(10), 0, 0, 0, 0, 0])\n  end\nend\n");
+    EXPECT_EQ(ids_of(program.read()), (std::vector<std::string>{"3:18", "7:12"}));
+    EXPECT_EQ(program.read().others, (std::vector<long>{8, 9}));
+    VectorXd first(6);
+    first << 0, -1.5712345, 0.1, 0, 0, 0;
+    VectorXd second(6);
+    second << 0.12345678, -1.2, 0.3, 0, 0, 0;
+    const std::string text = program.replaced({first, second});
+    EXPECT_NE(text.find("home = [0, -1.571235, 0.1, 0, 0, 0]"), std::string::npos) << text;
+    EXPECT_NE(text.find("movel([0.1234568, -1.2, 0.3, 0, 0, 0], a"), std::string::npos) << text;
+}
+
+TEST(ProgramTargets, AreRefusedWhereTheyCannotBeUsed) {
+    EXPECT_NE(Written(ProgramFormat::Ur, "def a():\nend\n").error().find("no target in joint"),
+              std::string::npos);
+    EXPECT_NE(Written(ProgramFormat::Kuka, "PTP {A1 1e9,A2 1,A3 1,A4 1,A5 1,A6 1}\nEND\n")
+                  .error()
+                  .find("cell.src:1:9: has 1e+09 for joint 1, which no robot reaches"),
+              std::string::npos);
+    EXPECT_NE(Written(ProgramFormat::Staubli, "").error().find("must be fanuc, kuka, abb or ur"),
+              std::string::npos);
+}
+
+/// The robot with errors, gravity's among them, is where the nominal one is, at the joints of the
+/// corrected program, to what the correction claims and the digits of the file.
+TEST(ProgramTargets, BringTheRobotWithErrorsHome) {
+    const TemporaryFolder folder;
+    for (const ProgramFormat format : target_formats) {
+        const CampaignFile campaign = cell_with(controller_of(format));
+        const ControllerJoints& joints = campaign.controller;
+        const std::string path = folder.path(file_of(format));
+        write_robot_program(path, format, cell_program(joints), "", campaign, {});
+        const TargetProgram program = read_program_targets(path, format, joints);
+        RandomStream stream(11);
+        Parameters found = campaign.nominal;
+        const VectorXd scale = parameter_scale(campaign);
+        const Index first = scale.size() - found.sensor.size() - found.robot.size();
+        for (Index k = 0; k < found.robot.size(); ++k) {
+            found.robot[k] = stream.uniform(-1, 1) * scale[first + k];
+        }
+        RowMatrixXd nominal(std::ssize(program.targets), 6);
+        for (Index k = 0; k < nominal.rows(); ++k) {
+            nominal.row(k) =
+                joints.to_model(program.targets[static_cast<std::size_t>(k)].joints).transpose();
+        }
+        const CorrectedPoses corrected = correct_poses(campaign, found, nominal, ids_of(program));
+        std::vector<VectorXd> values;
+        for (const Correction& one : corrected.corrections) {
+            values.push_back(joints.to_controller(one.joints));
+        }
+        write_program_targets(path, program, format, joints, values);
+        const TargetProgram back = read_program_targets(path, format, joints);
+        const VectorXd none = VectorXd::Zero(campaign.robot.parameter_count());
+        constexpr double reach = 3.5;  // m
+        const double rounding = reach / 2 * joint_steps(format, joints).sum();
+        for (Index k = 0; k < nominal.rows(); ++k) {
+            const Correction& one = corrected.corrections[static_cast<std::size_t>(k)];
+            const Vector3d wanted =
+                campaign.robot.base_from_flange(nominal.row(k).transpose(), none).translation();
+            const VectorXd q = joints.to_model(back.targets[static_cast<std::size_t>(k)].joints);
+            const Vector3d reached = campaign.robot.base_from_flange(q, found.robot).translation();
+            EXPECT_NEAR((reached - wanted).norm(), one.residual.position, rounding);
+            EXPECT_GT(one.uncorrected.position, 5 * rounding) << program_format_name(format);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace posewise::io
