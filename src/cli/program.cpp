@@ -234,6 +234,7 @@ void write_program(const ProgramArguments& arguments, const CommonOptions& commo
     });
     const io::RobotProgram program =
         make_program(arguments, both.campaign, stops_of(route, sent, controller));
+    compute_from(arguments.plan, [&] { io::check_stops(program); });
     io::ProgramReport report;
     report.format = format;
     report.files = io::program_files(arguments.out, format, program);

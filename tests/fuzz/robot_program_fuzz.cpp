@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "fuzzed_file.hpp"
+#include "posewise/io/program_targets.hpp"
 #include "posewise/io/robot_programs.hpp"
 
 using namespace posewise;
@@ -33,6 +34,14 @@ void read(const std::string& path, ProgramFormat format) {
     const auto stops = io::read_robot_program(path, format, arm().controller);
     io::program_content(path, stops, arm(), io::joint_steps(format, arm().controller),
                         std::nullopt);
+}
+
+/// Targets that are replaced by themselves leave the program as it is.
+void replace(const std::string& path, ProgramFormat format) {
+    const io::TargetProgram program = io::read_program_targets(path, format, arm().controller);
+    std::vector<VectorXd> values;
+    for (const io::JointTarget& target : program.targets) values.push_back(target.joints);
+    io::replace_targets(program, format, arm().controller, values);
 }
 
 /// A project whose data, or else whose program, is the input.
@@ -70,6 +79,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const auto& [format, name] : formats) {
         const auto read_it = [kind = format](const std::string& path) { read(path, kind); };
         testing::read_or_refuse(data, size, name, read_it);
+        const auto replace_it = [kind = format](const std::string& path) { replace(path, kind); };
+        testing::read_or_refuse(data, size, name, replace_it);
     }
     read_project(data, size, true);
     return read_project(data, size, false);

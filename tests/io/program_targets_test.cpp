@@ -205,6 +205,44 @@ TEST(ProgramTargets, AreRefusedWhereTheyCannotBeUsed) {
               std::string::npos);
 }
 
+TEST(ProgramTargets, AreFoundOrRefusedInSpoiltFiles) {
+    const TemporaryFolder folder;
+    const CampaignFile campaign = cell_with(reversed_joints);
+    const ControllerJoints& joints = campaign.controller;
+    const std::string alphabet = "{}[](),;:=\"'!#./-0123456789 \n\rPJA";
+    for (const ProgramFormat format : all_formats) {
+        if (format == ProgramFormat::Staubli) continue;
+        const std::string path = folder.path(file_of(format));
+        write_robot_program(path, format, cell_program(joints), "", campaign, {});
+        const std::string text = detail::read_file(path);
+        for (Index i = 0; i < std::max<Index>(sweep_count() / 10, 50); ++i) {
+            RandomStream stream(6, static_cast<std::uint64_t>(i));
+            std::string spoilt = text;
+            for (Index k = stream.index(4) + 1; k > 0; --k) {
+                const auto at = static_cast<std::size_t>(stream.index(std::ssize(spoilt)));
+                const char letter =
+                    alphabet[static_cast<std::size_t>(stream.index(std::ssize(alphabet)))];
+                if (stream.index(2) == 0) spoilt.erase(at, 1 + at % 40);
+                if (at < spoilt.size()) spoilt[at] = letter;
+            }
+            detail::write_file(path, spoilt);
+            try {
+                program_content(path, read_robot_program(path, format, joints), campaign,
+                                joint_steps(format, joints), std::nullopt);
+            } catch (const InputError& error) {
+                EXPECT_TRUE(std::string_view(error.what()).starts_with(path)) << error.what();
+            }
+            try {
+                const TargetProgram program = read_program_targets(path, format, joints);
+                const std::string same =
+                    replace_targets(program, format, joints, values_of(program));
+                EXPECT_EQ(same.size(), spoilt.size()) << spoilt;
+            } catch (const InputError&) {
+            }
+        }
+    }
+}
+
 /// The robot with errors, gravity's among them, is where the nominal one is, at the joints of the
 /// corrected program, to what the correction claims and the digits of the file.
 TEST(ProgramTargets, BringTheRobotWithErrorsHome) {

@@ -76,6 +76,9 @@ std::vector<std::string> pose_labels(const std::vector<std::string>& ids);
 /// digits and underscores, none of its language's words, as long as it may be.
 std::string legal_program_name(ProgramFormat format, std::string_view text);
 
+/// Throws InputError for a stop with a joint that is missing, not finite or where no robot is.
+void check_stops(const RobotProgram& program);
+
 /// The files that write_robot_program() writes. Throws InputError if `path` has another ending than
 /// the format's, or, where the file must have the program's name, one that is not legal.
 std::vector<std::string> program_files(const std::string& path, ProgramFormat format,
@@ -89,7 +92,7 @@ std::vector<std::string> stale_program_files(const std::string& path, ProgramFor
 /// Writes the program and, unless its path is empty, the plan as it is sent as CSV of
 /// write_configurations_csv(), in model coordinates: all files or none. Throws InputError as
 /// joint_steps() and program_files(), for a handshake that the format has none of, for more stops
-/// than the controller takes, and for a joint where no robot is.
+/// than the controller takes, and as check_stops().
 void write_robot_program(const std::string& path, ProgramFormat format, const RobotProgram& program,
                          const std::string& sent_path, const Campaign& campaign, const Plan& sent);
 

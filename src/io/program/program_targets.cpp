@@ -359,10 +359,13 @@ std::string value_text(std::string_view text, const ProgramRules& rules, Motion 
     const bool is_plain = text.find_first_of("eE") == std::string_view::npos;
     ProgramRules digits = rules;
     if (point != std::string_view::npos && is_plain) {
-        digits.decimals = std::max(rules.decimals, static_cast<int>(text.size() - point) - 1);
+        constexpr std::size_t most = 12;  // a double holds no more of a turn
+        const std::size_t decimals = std::min(most, text.size() - point - 1);
+        digits.decimals = std::max(rules.decimals, static_cast<int>(decimals));
     }
     const std::string replaced = detail::joint_text(digits, motion, si);
-    const bool is_same = detail::parse_number(replaced).value == detail::parse_number(text).value;
+    const double change = detail::parse_number(replaced).value - detail::parse_number(text).value;
+    const bool is_same = std::abs(change) < 0.501 * std::pow(10.0, -digits.decimals);
     return is_same ? std::string(text) : replaced;
 }
 

@@ -79,21 +79,7 @@ void check_program(ProgramFormat format, const RobotProgram& program) {
                                      name_of(format), is_pause ? "pause" : "io",
                                      rules.has_pause ? " or pause" : ""));
     }
-    for (const ProgramStop& stop : program.stops) {
-        if (stop.joints.size() != program.joints.count() || !stop.joints.allFinite()) {
-            throw InputError("stop " + detail::quote(stop.label) +
-                             " has a joint that is missing or not finite");
-        }
-        for (Index i = 0; i < stop.joints.size(); ++i) {
-            const detail::Quantity quantity = detail::quantity_of(program.joints.motion(i));
-            if (detail::is_plausible(stop.joints[i], quantity)) continue;
-            const AmountUnits& units = units_of(program.joints.motion(i));
-            throw InputError(fmt::format("stop {} has {:g} {} for {}, which no robot reaches",
-                                         detail::quote(stop.label),
-                                         units.to_reading(stop.joints[i]), units.reading,
-                                         program.joints.names()[static_cast<std::size_t>(i)]));
-        }
-    }
+    check_stops(program);
 }
 
 void check_path(const std::string& path, ProgramFormat format) {
@@ -177,10 +163,27 @@ std::string legal_program_name(ProgramFormat format, std::string_view text) {
     return detail::legal_name(text, rules.longest_name, rules.is_upper, rules.words);
 }
 
+void check_stops(const RobotProgram& program) {
+    for (const ProgramStop& stop : program.stops) {
+        if (stop.joints.size() != program.joints.count() || !stop.joints.allFinite()) {
+            throw InputError("stop " + detail::quote(stop.label) +
+                             " has a joint that is missing or not finite");
+        }
+        for (Index i = 0; i < stop.joints.size(); ++i) {
+            const detail::Quantity quantity = detail::quantity_of(program.joints.motion(i));
+            if (detail::is_plausible(stop.joints[i], quantity)) continue;
+            const AmountUnits& units = units_of(program.joints.motion(i));
+            throw InputError(fmt::format("stop {} has {:g} {} for {}, which no robot reaches",
+                                         detail::quote(stop.label),
+                                         units.to_reading(stop.joints[i]), units.reading,
+                                         program.joints.names()[static_cast<std::size_t>(i)]));
+        }
+    }
+}
+
 std::vector<std::string> program_files(const std::string& path, ProgramFormat format,
                                        const RobotProgram& program) {
     check_path(path, format);
-    check_program(format, program);
     std::vector<std::string> paths;
     for (const FileContent& file : kind_of(format).write(path, program)) {
         paths.push_back(file.path);
