@@ -201,7 +201,7 @@ BlocksStudy study(Blocks candidates, const BlocksStudyOptions& options) {
         std::ranges::move(rows, std::back_inserter(study.rows));
     }
     study.ending = options.stop.ending_or(Ending::Converged);
-    check_any_identifies(study.rows);
+    detail::compute_from(name, [&] { check_any_identifies(study.rows); });
     return study;
 }
 
