@@ -117,6 +117,12 @@ def study(
     force: bool,
     options: CallOptions,
 ) -> Result: ...
+def study_plain(
+    blocks: PlainBlocks,
+    keywords: str,
+    subsets: Sequence[tuple[str, Sequence[int]]],
+    options: CallOptions,
+) -> Result: ...
 def simulate_study(
     campaign: Campaign, keywords: str, prior: bool | None, options: CallOptions
 ) -> Result: ...

@@ -30,7 +30,7 @@ Prior = Union[bool, npt.ArrayLike, None]
 
 
 @dataclass(frozen=True)
-class _Blocks:
+class Blocks:
     """Jacobians as the library takes them: stacked rows."""
 
     matrix: Array
@@ -69,7 +69,7 @@ class Choice:
     @property
     def poses(self) -> Any:
         """For Jacobians their indices, ascending; for a robot a DataFrame with the joint values."""
-        if isinstance(self._source, _Blocks):
+        if isinstance(self._source, Blocks):
             return np.array([int(one) for one in self.ids])
         rows = [pose["joints"] for pose in self.document["poses"]]
         index = pd.Index([pose["id"] for pose in self.document["poses"]], name="config")
@@ -116,7 +116,7 @@ class Choice:
         with Files() as files:
             plan = files.text(json.dumps(self.document), "plan")
             options = call_options(None, None, None)
-            if isinstance(self._source, _Blocks):
+            if isinstance(self._source, Blocks):
                 result = _posewise.verify_plain(plan, self._source.core(), self._groups, options)
             else:
                 result = self._source.verify(files, plan, self._groups, options)
@@ -225,9 +225,9 @@ def _prior_rows(prior: Prior, columns: int) -> Array:
     )
 
 
-def _make_blocks(
+def make_blocks(
     J: npt.ArrayLike, rows: int | None, prior: Prior, held: Any, test_poses: Any
-) -> _Blocks:
+) -> Blocks:
     matrix, rows = as_blocks(J, "J", rows)
     columns = matrix.shape[1]
     known = np.zeros((0, columns))
@@ -244,7 +244,7 @@ def _make_blocks(
     for name, array in (("held", known), ("test_poses", tests)):
         if array.shape[1] != columns:
             raise InputError(f"`{name}` has {array.shape[1]} parameters; must have {columns}, as J")
-    return _Blocks(matrix, rows, np.ascontiguousarray(known), held_count, tests)
+    return Blocks(matrix, rows, np.ascontiguousarray(known), held_count, tests)
 
 
 def _labels(groups: Any) -> list[int]:
@@ -345,7 +345,7 @@ def select(
             raise InputError(
                 "select(): `candidates`, `measurements`, `random` and `estimate` go with a campaign"
             )
-        blocks = _make_blocks(source, rows, prior, held, test_poses)
+        blocks = make_blocks(source, rows, prior, held, test_poses)
         if isinstance(prior, (bool, np.bool_)):
             keywords["prior"] = bool(prior)
         result = _posewise.choose_plain(
@@ -396,7 +396,7 @@ def indices(
     >>> round(indices(np.eye(3)[:, None, :])["a"], 3)
     0.333
     """
-    blocks = _make_blocks(J, rows, prior, held, test_poses)
+    blocks = make_blocks(J, rows, prior, held, test_poses)
     count = len(blocks.matrix) // blocks.rows
     taken = np.arange(count) if poses is None else np.asarray(poses)
     if taken.dtype.kind not in "iu" or taken.ndim != 1 or ((taken < 0) | (taken >= count)).any():

@@ -190,4 +190,19 @@ SimulatedStudyOptions simulated_study_options(const Keywords& keywords) {
     return options;
 }
 
+BlocksStudyOptions blocks_study_options(const Keywords& keywords) {
+    const Stated stated(keywords);
+    BlocksStudyOptions options;
+    stated("criteria", options.criteria);
+    stated("poses", options.pose_counts, Count{1, most_poses});
+    stated("random", options.random_subsets, Count{0, most_poses});
+    stated("prior", options.has_prior);
+    stated("exclude", options.excluded);
+    stated("repeat_limit", options.repeat_limit, Count{1, most_poses});
+    stated("starts", options.starts, Count{0, 1000000});
+    stated("proof", options.proof, Number{.least = 0, .most = 1e9});
+    stated("seed", options.seed);
+    return options;
+}
+
 }  // namespace posewise::python

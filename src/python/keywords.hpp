@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "io/format/json.hpp"
+#include "posewise/task/blocks_study.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/plan.hpp"
 #include "posewise/task/planning.hpp"
@@ -39,5 +40,6 @@ CalibrationRequest calibration_request(const Keywords& keywords);
 
 StudyOptions study_options(const Keywords& keywords);
 SimulatedStudyOptions simulated_study_options(const Keywords& keywords);
+BlocksStudyOptions blocks_study_options(const Keywords& keywords);
 
 }  // namespace posewise::python

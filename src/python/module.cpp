@@ -382,6 +382,20 @@ Result study_simulated(const io::CampaignFile& campaign, const std::string& keyw
     });
 }
 
+Result study_plain(const PlainBlocks& blocks, const std::string& keywords,
+                   std::vector<std::pair<std::string, std::vector<Index>>> subsets,
+                   const CallOptions& call_options) {
+    BlocksStudyOptions options = blocks_study_options(parse_keywords("study", keywords));
+    return call(call_options, [&](const CallControl& control) -> Result {
+        static_cast<ChoiceOptions&>(options) = read_plain(blocks, options, {});
+        for (auto& [name, poses] : subsets) options.subsets.push_back({name, poses});
+        options.stop = control.stop;
+        options.progress = control.progress;
+        const BlocksStudy found = study(make_equal_blocks(blocks.candidates, blocks.rows), options);
+        return {io::to_json(found), format(found), {}};
+    });
+}
+
 void define_records(py::module_& module) {
     py::class_<CallOptions>(module, "CallOptions")
         .def(py::init([](std::optional<Index> threads, double time, py::object progress) {
@@ -435,5 +449,6 @@ PYBIND11_MODULE(_posewise, module) {
     module.def("calibrate", &calibrate_campaign);
     module.def("predict", &predict);
     module.def("study", &study_measured);
+    module.def("study_plain", &study_plain);
     module.def("simulate_study", &study_simulated);
 }

@@ -201,3 +201,23 @@ def test_a_calibration_from_points_and_a_plan(tmp_path):
     points = targets.loc[targets["visible"] == "yes", ["name", "x_mm", "y_mm", "z_mm"]]
     estimate = pw.calibrate(campaign, points.sample(frac=1, random_state=1), plan=plan, force=True)
     assert estimate.accuracy.loc["fit", "distance_rms_mm"] < 1e-3
+
+
+def test_study_of_blocks(blocks):
+    study = pw.study(blocks, poses=[4, 6], criteria=["d", "v"], random=30,
+                     subsets={"mine": [0, 1, 2, 3]})
+    assert list(study["poses"]) == [4, 4, 6, 6]
+    row = study.table.iloc[0]
+    assert row["value"] == pytest.approx(pw.select(blocks, 4).value)
+    assert row["mine_value"] == pytest.approx(pw.indices(blocks, [0, 1, 2, 3])["d"])
+    assert row["random_efficiency_p95"] <= row["efficiency"] <= 1
+    for wrong, words in [
+        ({"poses": []}, ""),
+        ({"poses": [0]}, "poses"),
+        ({"poses": [4], "criteria": "z"}, "criteria"),
+        ({"poses": [4], "trials": 3}, "campaign"),
+        ({"poses": [4], "subsets": [1, 2]}, "subsets"),
+        ({"poses": [4], "subsets": {"mine": [99]}}, "99"),
+    ]:
+        with pytest.raises(pw.InputError, match=words):
+            pw.study(blocks, **wrong)
