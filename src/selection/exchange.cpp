@@ -8,6 +8,8 @@
 #include <span>
 
 #include "branch_and_bound.hpp"
+#include "common_rows.hpp"
+#include "core/decompositions.hpp"
 #include "core/elementary.hpp"
 #include "core/parallel.hpp"
 #include "core/progress_counter.hpp"
@@ -72,7 +74,8 @@ ScoredPoses make_identifying(const SearchProblem& problem, const Shortlist& shor
     if (choice.score.identifies || problem.objective.criterion == Criterion::D) return choice;
     const detail::Objective determinant;
     SearchProblem by_determinant{problem.candidates, problem.options, determinant,
-                                 problem.held,       problem.ridge,   problem.ruggedness};
+                                 problem.held,       problem.ridge,   problem.common_rows,
+                                 problem.ruggedness};
     const ScoredPoses changed = improve_with_kicks(
         by_determinant, detail::make_shortlist(problem.candidates, shortlist.members),
         make_choice(by_determinant, choice.poses), random);
@@ -90,7 +93,7 @@ Index start_count(const Shortlist& shortlist, const SearchProblem& problem) {
     const SelectOptions& options = problem.options;
     if (options.starts > 0) return options.starts;
     // A start of 20 out of 800 blocks of 9 rows and 86 parameters takes 2 s of a CPU.
-    const double rows = detail::mean_rows(problem.candidates);
+    const double rows = detail::rows_each(problem);
     const double work = rows * rows * static_cast<double>(problem.candidates.parameter_count()) *
                         static_cast<double>(options.pose_count) *
                         static_cast<double>(shortlist.members.size()) * problem.ruggedness;
@@ -324,10 +327,22 @@ Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
     const std::string reason = detail::describe_unidentified(candidates, options);
     if (!reason.empty()) return unidentified(reason);
     const detail::Objective objective = detail::make_objective(candidates, options);
-    const SearchProblem problem{candidates, options, objective,
-                                detail::held_information(candidates, options),
-                                detail::ridge_of(candidates)};
-    const Relaxation relaxation = relax(objective, candidates, options);
+    // Lower blocks are searched where part of all blocks is the same.
+    const detail::CommonRows common = detail::split_common_rows(candidates);
+    const bool is_split = common.rows.rows() > 0;
+    const Blocks& searched = is_split ? common.others : candidates;
+    SelectOptions with_common = options;
+    if (is_split) {
+        const double count = static_cast<double>(options.pose_count);
+        with_common.held_rows = detail::stack(options.held_rows, std::sqrt(count) * common.rows);
+    }
+    const SearchProblem problem{searched,
+                                with_common,
+                                objective,
+                                detail::held_information(searched, with_common),
+                                detail::ridge_of(candidates),
+                                common.rows.rows()};
+    const Relaxation relaxation = relax(objective, searched, with_common);
     const Outcome outcome = search(problem, relaxation);
     const ScoredPoses& best = outcome.best;
     if (!best.score.identifies) {
@@ -346,7 +361,7 @@ Choice select_poses(const Blocks& candidates, const SelectOptions& options) {
     plan.poses = best.poses;
     std::sort(plan.poses.begin(), plan.poses.end());
     plan.criterion = options.criterion;
-    plan.value = best.score.value;
+    plan.value = detail::choice_value(objective, candidates, options, plan.poses);
     plan.bound = outcome.is_optimal
                      ? plan.value
                      : std::max(std::min(relaxation.bound, outcome.bound), plan.value);

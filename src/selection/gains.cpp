@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "core/products.hpp"
@@ -122,15 +123,19 @@ bool Gains::remove(const Eigen::Ref<const RowMatrixXd>& block) {
     if (least_left < singular) return false;
     P_ = left.matrixL().solve(Z.transpose()).transpose();
     is_removal_accurate_ = least_left > least_left_by_updates;
-    const double margin = is_removal_accurate_ ? gain_margin : 1;
+    const auto set_gains = [&](double lost) {
+        least_gain_ = is_removal_accurate_ ? (1 - gain_margin) * lost : 0;
+        certain_gain_ = is_removal_accurate_ ? (1 + gain_margin) * lost
+                                             : std::numeric_limits<double>::infinity();
+    };
     if (is_determinant()) {
-        least_gain_ = (1 - margin) / left.matrixLLT().diagonal().array().square().prod();
+        set_gains(1 / left.matrixLLT().diagonal().array().square().prod());
         return true;
     }
     // W C W - M^-1 C M^-1 = P Q^T + Q P^T with Q = M^-1 C P + P (P^T C P) / 2.
     const MatrixXd slope_P = left.matrixL().solve(slope_B.transpose()).transpose();
     const MatrixXd PCP = left.matrixL().solve(block * slope_P);
-    least_gain_ = (1 - margin) * PCP.trace();
+    set_gains(PCP.trace());
     Q_ = slope_P + 0.5 * P_ * PCP;
     return true;
 }

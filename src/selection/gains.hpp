@@ -38,6 +38,8 @@ class Gains {
     /// By how much the block that was removed lowered trace(C W), or its factor of the determinant,
     /// but for rounding, so that nothing as good is below it. Only after remove().
     double least_gain() const { return least_gain_; }
+    /// The same above rounding: more than this is better for sure.
+    double certain_gain() const { return certain_gain_; }
     /// For the shortlisted positions asked for: the factor of the determinant, or by how much
     /// trace(C W) falls. Only after remove().
     VectorXd compute(const std::vector<Index>& positions);
@@ -62,6 +64,7 @@ class Gains {
     VectorXd sensitivity_;  // of the shortlist's members
     double removed_sensitivity_ = 0;
     double least_gain_ = 0;
+    double certain_gain_ = 0;
     MatrixXd P_;
     MatrixXd Q_;  // W C W - M^-1 C M^-1 = P Q^T + Q P^T
     bool is_removal_accurate_ = false;

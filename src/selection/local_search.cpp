@@ -49,6 +49,7 @@ class LocalSearch {
              at = (at + 1) % K) {
             unimproved = exchange_at(at) ? 0 : unimproved + 1;
         }
+        score();
     }
 
     /// Starts at a choice with one to four poses replaced by random ones of the shortlist; at the
@@ -98,29 +99,46 @@ class LocalSearch {
     void settle() {
         const MatrixXd M = problem_.regularised_information(choice_.poses);
         choice_.score = problem_.score(M);
+        is_scored_ = true;
         neighbourhood_.move_to(M);
+    }
+
+    void score() {
+        if (is_scored_) return;
+        choice_.score = problem_.score(problem_.regularised_information(choice_.poses));
+        is_scored_ = true;
     }
 
     bool exchange_at(std::size_t at) {
         const Index removed = choice_.poses[at];
         occupancy_.remove(removed);
-        const Index found =
+        const Neighbourhood::Replacement found =
             neighbourhood_.best_replacement(removed, choice_.score.value, occupancy_);
-        if (found >= 0) {
-            const Index candidate = shortlist_.members[static_cast<std::size_t>(found)];
-            choice_.poses[at] = candidate;
-            const MatrixXd M = problem_.regularised_information(choice_.poses);
-            const Score score = problem_.score(M);
-            if (is_better(score, choice_.score)) {
-                occupancy_.add(candidate);
-                choice_.score = score;
-                neighbourhood_.exchange(candidate, M);
-                return true;
-            }
-            choice_.poses[at] = removed;
+        if (found.position >= 0 && replace(at, found)) {
+            occupancy_.add(choice_.poses[at]);
+            return true;
         }
         occupancy_.add(removed);
         return false;
+    }
+
+    /// Whether it is better; else nothing is changed.
+    bool replace(std::size_t at, const Neighbourhood::Replacement& by) {
+        if (!by.is_certain) score();
+        const Index removed = choice_.poses[at];
+        const Index added = shortlist_.members[static_cast<std::size_t>(by.position)];
+        choice_.poses[at] = added;
+        const MatrixXd M = neighbourhood_.exchanged(removed, added);
+        if (by.is_certain) {
+            is_scored_ = false;
+        } else if (const Score score = problem_.score(M); is_better(score, choice_.score)) {
+            choice_.score = score;
+        } else {
+            choice_.poses[at] = removed;
+            return false;
+        }
+        neighbourhood_.exchange(added, M);
+        return true;
     }
 
     const SearchProblem& problem_;
@@ -128,6 +146,7 @@ class LocalSearch {
     Neighbourhood neighbourhood_;
     Occupancy occupancy_;
     ScoredPoses choice_;
+    bool is_scored_ = true;  // else the score is that of an earlier choice
 };
 
 /// Kicks without success to give up after.
@@ -163,6 +182,10 @@ double mean_rows(const Blocks& candidates) {
            static_cast<double>(std::max<Index>(1, candidates.count()));
 }
 
+double rows_each(const SearchProblem& problem) {
+    return mean_rows(problem.candidates) + static_cast<double>(problem.common_rows);
+}
+
 double ruggedness(const SearchProblem& problem, const Shortlist& shortlist) {
     const double poses = static_cast<double>(problem.options.pose_count);
     const double share = poses / static_cast<double>(shortlist.members.size());
@@ -170,8 +193,9 @@ double ruggedness(const SearchProblem& problem, const Shortlist& shortlist) {
         share * symmetric_gram(take(problem.candidates, shortlist.members).matrix);
     MatrixXd M = problem.held + told;
     M.diagonal().array() += problem.ridge;
-    const double parameters = M.ldlt().solve(told).trace();
-    const double needed = parameters / (poses * mean_rows(problem.candidates));
+    const double parameters =
+        M.ldlt().solve(told).trace() + static_cast<double>(problem.common_rows);
+    const double needed = parameters / (poses * rows_each(problem));
     const double square = std::clamp(needed * needed, 0.0, 1.0);
     return 1 + 9 * square * square;
 }

@@ -21,7 +21,8 @@ struct SearchProblem {
     const SelectOptions& options;
     const Objective& objective;
     MatrixXd held;
-    double ridge = 0;  ///< times the identity: small, but makes every matrix positive definite
+    double ridge = 0;       ///< times the identity: small, but makes every matrix positive definite
+    Index common_rows = 0;  ///< of all candidates, split off: among what is held
     /// From 1 to 10: choices with hardly more rows than parameters to tell have many local optima.
     double ruggedness = 10;
 
@@ -43,6 +44,8 @@ ScoredPoses judge(const SearchProblem& problem, ScoredPoses choice);
 double ridge_of(const Blocks& candidates);
 
 double mean_rows(const Blocks& candidates);
+/// On average, with those that were split off.
+double rows_each(const SearchProblem& problem);
 
 /// Of a SearchProblem, by the parameters that poses like those of the shortlist tell beyond what is
 /// held: tr((H + M)^-1 M), all without a prior.

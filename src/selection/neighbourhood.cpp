@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/decompositions.hpp"
+#include "core/products.hpp"
 #include "core/sensitivities.hpp"
 
 namespace posewise::detail {
@@ -93,6 +94,10 @@ void Neighbourhood::move_to(const MatrixXd& M) {
     gains_.move_to(M, make_C_root(M));
 }
 
+MatrixXd Neighbourhood::exchanged(Index removed, Index added) const {
+    return M_ - symmetric_gram(candidates_[removed]) + symmetric_gram(candidates_[added]);
+}
+
 void Neighbourhood::exchange(Index added, const MatrixXd& M) {
     if (ritz_ || ranking_ == Ranking::Estimate) return move_to(M);
     M_ = M;
@@ -153,15 +158,18 @@ double Neighbourhood::worst_prediction(const MatrixXd& M, double value) {
     return 1 / largest;
 }
 
-Index Neighbourhood::best_by_gains(Index removed, double value, const Occupancy& occupancy) {
+Neighbourhood::Replacement Neighbourhood::best_by_gains(Index removed, double value,
+                                                        const Occupancy& occupancy) {
     const auto B = candidates_[removed];
-    if (!gains_.remove(B)) return -1;
+    if (!gains_.remove(B)) return {};
     const std::vector<Index> positions = promising(removed, occupancy);
-    if (positions.empty()) return -1;
+    if (positions.empty()) return {};
     std::vector<Ranked> ranked = rank(positions);
-    if (ranked.empty()) return -1;
+    if (ranked.empty()) return {};
     if (ranking_ == Ranking::Exact) {
-        return ranked.front().gain >= gains_.least_gain() ? ranked.front().position : -1;
+        const auto [position, gain] = ranked.front();
+        if (gain < gains_.least_gain()) return {};
+        return {position, gain > gains_.certain_gain()};
     }
     const MatrixXd remaining = M_ - B.transpose() * B;
     Index best = -1;
@@ -180,7 +188,7 @@ Index Neighbourhood::best_by_gains(Index removed, double value, const Occupancy&
         best = batch[static_cast<std::size_t>(largest - exchanged.begin())];
         value = *largest;
     }
-    return best;
+    return {best, false};
 }
 
 std::vector<double> Neighbourhood::evaluate_exchanges(const MatrixXd& remaining, double value,
@@ -286,9 +294,10 @@ std::vector<Index> Neighbourhood::nearest(const std::vector<Index>& poses, Index
     return positions;
 }
 
-Index Neighbourhood::best_replacement(Index removed, double value, const Occupancy& occupancy) {
-    if (ritz_) return best_by_eigenvalues(removed, value, occupancy);
-    if (ranking_ == Ranking::Witnesses) return best_by_witnesses(removed, value, occupancy);
+Neighbourhood::Replacement Neighbourhood::best_replacement(Index removed, double value,
+                                                           const Occupancy& occupancy) {
+    if (ritz_) return {best_by_eigenvalues(removed, value, occupancy)};
+    if (ranking_ == Ranking::Witnesses) return {best_by_witnesses(removed, value, occupancy)};
     return best_by_gains(removed, value, occupancy);
 }
 

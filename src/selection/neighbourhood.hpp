@@ -28,13 +28,19 @@ class Neighbourhood {
 
     /// The plan's information matrix is now M (positive definite).
     void move_to(const MatrixXd& M);
-    /// The same after the last pose asked about gave way to the `added` one.
+    /// M with the `removed` pose's information replaced by the `added` one's.
+    MatrixXd exchanged(Index removed, Index added) const;
+    /// As move_to() after the last pose asked about gave way to the `added` one, which makes it M.
     void exchange(Index added, const MatrixXd& M);
 
+    struct Replacement {
+        Index position = -1;
+        bool is_certain = false;  ///< that it exceeds `value` by more than rounding
+    };
     /// Position in the shortlist of the allowed candidate that makes the objective of (M -
     /// B^T B of `removed` + its own) largest; -1 if none is found that exceeds `value`, the
-    /// objective of M.
-    Index best_replacement(Index removed, double value, const Occupancy& occupancy);
+    /// objective of M (which exact gains do not look at).
+    Replacement best_replacement(Index removed, double value, const Occupancy& occupancy);
 
     /// Positions in the shortlist, ascending, of at most `count` candidates: those that come
     /// nearest to making the objective larger in the place of one of these poses, M's. Only where
@@ -62,7 +68,7 @@ class Neighbourhood {
                                            std::span<const Index> positions);
     std::vector<double> evaluate_in_lanes(const MatrixXd& remaining, double value,
                                           std::span<const Index> positions);
-    Index best_by_gains(Index removed, double value, const Occupancy& occupancy);
+    Replacement best_by_gains(Index removed, double value, const Occupancy& occupancy);
     Index best_by_witnesses(Index removed, double value, const Occupancy& occupancy);
     Index best_by_eigenvalues(Index removed, double value, const Occupancy& occupancy);
     bool is_allowed(Index position, Index removed, const Occupancy& occupancy) const;

@@ -18,11 +18,10 @@ WORK = [
 ]
 
 
-def run(program, campaign, arguments, seed, out):
+def run(program, command, campaign, arguments, seed, out):
     before = os.times()
     subprocess.run(
-        [program, "plan", os.path.join(SOURCE, "designs", campaign), *arguments, "--seed", str(seed),
-         "--out", out],
+        [program, command, campaign, *arguments, "--seed", str(seed), "--out", out],
         check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         env={**os.environ, "OMP_NUM_THREADS": "1"})
     after = os.times()
@@ -38,9 +37,11 @@ def main():
     print(f"{'':22}{'seed':>5}{'before/s':>10}{'after/s':>10}{'before':>15}{'after':>15}")
     with tempfile.TemporaryDirectory() as folder:
         out = os.path.join(folder, "plan.json")
-        for name, campaign, arguments in WORK:
+        for name, design, arguments in WORK:
+            campaign = os.path.join(SOURCE, "designs", design)
             for seed in range(1, seeds + 1):
-                found = [run(program, campaign, arguments, seed, out) for program in programs]
+                found = [run(program, "plan", campaign, arguments, seed, out)
+                         for program in programs]
                 print(f"{name:22}{seed:5}" + "".join(f"{seconds:10.1f}" for seconds, _ in found)
                       + "".join(f"{value:15.8g}" for _, value in found), flush=True)
 
