@@ -53,13 +53,16 @@ class Population {
         return all;
     }
 
+    bool has(Poses poses) const {
+        std::sort(poses.begin(), poses.end());
+        return std::any_of(members_.begin(), members_.end(),
+                           [&](const ScoredPoses& member) { return member.poses == poses; });
+    }
+
     /// Whether it was new and good enough to be taken.
     bool add(ScoredPoses choice) {
         std::sort(choice.poses.begin(), choice.poses.end());
-        const bool is_known =
-            std::any_of(members_.begin(), members_.end(),
-                        [&](const ScoredPoses& member) { return member.poses == choice.poses; });
-        if (is_known || !choice.score.identifies) return false;
+        if (has(choice.poses) || !choice.score.identifies) return false;
         const auto place = std::find_if(
             members_.begin(), members_.end(),
             [&](const ScoredPoses& member) { return choice.score.value > member.score.value; });
@@ -99,7 +102,8 @@ ScoredPoses recombine(const SearchProblem& problem, const Shortlist& shortlist,
                       parents[static_cast<std::size_t>(pair[1])].poses, random);
             if (static_cast<Index>(poses.size()) < options.pose_count) return;
             const Score score = problem.score(problem.regularised_information(poses));
-            ScoredPoses improved = improve(problem, known, {std::move(poses), score});
+            const ScoredPoses improved = improve(problem, known, {std::move(poses), score});
+            if (population.has(improved.poses)) return;  // nothing improves a member
             born[static_cast<std::size_t>(child)] =
                 judge(problem, improve(problem, shortlist, improved));
         });
