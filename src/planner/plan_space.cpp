@@ -117,6 +117,7 @@ RowMatrixXd choose_from_part(const Problem& problem, Index start) {
     select.criterion = smooth_relative(options.criterion);
     select.starts = 1;
     select.kicks = 0;
+    select.proof = 0;
     select.gap = 0.05;
     select.stop = options.stop;
     return candidates(determined(select_poses(take(problem.blocks, part), select)).poses,

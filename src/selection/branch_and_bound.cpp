@@ -13,19 +13,26 @@ namespace posewise::detail {
 namespace {
 
 constexpr double most_numbers = 3e7;  // of all candidates' information matrices
-constexpr double most_waiting = 5e7;  // numbers of all parts that wait
+// Of more of both no proof takes seconds only.
+constexpr double likely_numbers = 2e6;
+constexpr double likely_choices = 60;  // their logarithm
+constexpr double most_waiting = 5e7;   // numbers of all parts that wait
 constexpr std::size_t parts_at_once = 16;
 
 bool has_less_bound(const Part& a, const Part& b) { return a.pricing.bound < b.pricing.bound; }
 
+/// The logarithm of n choose m.
+double log_choices(double n, double m) {
+    return std::lgamma(n + 1) - std::lgamma(m + 1) - std::lgamma(n - m + 1);
+}
+
 /// The logarithm of how many choices a part has at most, beyond prices and limits.
 double log_size(const PartSetting& setting, const Part& part) {
     const auto n = static_cast<double>(part.open.size());
-    const auto m = static_cast<double>(part.missing(setting)) - 1;
+    const auto m = static_cast<double>(part.missing(setting));
     const double copies = static_cast<double>(setting.problem.options.repeat_limit);
-    if (m + 1 > n * copies) return -std::numeric_limits<double>::infinity();
-    const double of = copies > 1 ? n + m + 1 : n + 1;
-    return std::lgamma(of) - std::lgamma(m + 2) - std::lgamma(of - m - 1);
+    if (m > n * copies) return -std::numeric_limits<double>::infinity();
+    return log_choices(copies > 1 ? n + m - 1 : n, m);
 }
 
 /// What is left to be searched of all choices, and what was found.
@@ -149,7 +156,12 @@ Proof prove(const SearchProblem& problem, const Certificate& certificate, const 
     if (!best.score.identifies || pricing.prices.size() == 0 || !(limits.seconds > 0)) return proof;
     const std::vector<Index> open = find_open(problem, all, pricing);
     const ChoiceFilter filter(problem.objective, problem.regularised_information(best.poses));
-    if (static_cast<double>(std::ssize(open) * filter.packed_size()) > most_numbers) return proof;
+    const auto numbers = static_cast<double>(std::ssize(open) * filter.packed_size());
+    const double choices = log_choices(static_cast<double>(std::ssize(open)),
+                                       static_cast<double>(problem.options.pose_count));
+    if (numbers > most_numbers) return proof;
+    if (limits.is_only_if_likely && numbers > likely_numbers && choices > likely_choices)
+        return proof;
     WorkingSet set(problem.candidates);
     set.add(open);
     MatrixXd packed(filter.packed_size(), set.size());

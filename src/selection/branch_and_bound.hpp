@@ -20,7 +20,7 @@ struct Proof {
 struct ProofLimits {
     double seconds = 0;  ///< of a CPU, about
     /// Whether to give up after a tenth of them where that settled less than a tenth of the
-    /// choices.
+    /// choices, and not to begin where there are too many for any hope.
     bool is_only_if_likely = false;
     double bound = -std::numeric_limits<double>::infinity();  ///< is enough
 };

@@ -34,6 +34,12 @@ LinearGain linear_gain(const VectorXd& g, const VectorXd& w, const WeightProblem
     return result;
 }
 
+/// Of the criterion's value at M.
+double logarithm_of(const Objective& objective, double value, const MatrixXd& M) {
+    if (!is_logarithm(objective.criterion)) return value > 0 ? logarithm(value) : value;
+    return value / static_cast<double>(interest_count(objective, M.rows()));
+}
+
 }  // namespace
 
 VectorXd project_on_capped_simplex(const VectorXd& point, const VectorXd& upper, double total) {
@@ -56,14 +62,13 @@ VectorXd project_on_capped_simplex(const VectorXd& point, const VectorXd& upper,
 }
 
 double log_value(const Objective& objective, const MatrixXd& M) {
-    const double value = evaluate(objective, M);
-    if (!is_logarithm(objective.criterion)) return value > 0 ? logarithm(value) : value;
-    return value / static_cast<double>(interest_count(objective, M.rows()));
+    return logarithm_of(objective, evaluate(objective, M), M);
 }
 
-MatrixXd log_gradient(const Objective& objective, const MatrixXd& M) {
+MatrixXd log_gradient(const Objective& objective, const MatrixXd& M, double* log_value) {
     double value = 0;
     const MatrixXd slope = gradient(objective, M, &value);
+    if (log_value != nullptr) *log_value = logarithm_of(objective, value, M);
     return slope / (is_logarithm(objective.criterion)
                         ? static_cast<double>(interest_count(objective, M.rows()))
                         : value);
@@ -76,9 +81,10 @@ WeightSearch ascend(const WeightProblem& problem, const VectorXd& start, double 
         return problem.held + problem.set.weighted_information(w);
     };
     WeightSearch search{start, M_of(start), 0, 0};
-    double value = log_value(problem.objective, search.M);
+    double value = 0;
+    MatrixXd slope_M = log_gradient(problem.objective, search.M, &value);
     if (!std::isfinite(value)) return search;
-    VectorXd g = problem.set.sensitivities(log_gradient(problem.objective, search.M));
+    VectorXd g = problem.set.sensitivities(slope_M);
     std::deque<double> recent{value};
     double step = problem.total / (static_cast<double>(g.size()) * g.cwiseAbs().maxCoeff());
     while (true) {
@@ -93,7 +99,8 @@ WeightSearch ascend(const WeightProblem& problem, const VectorXd& start, double 
         const double slope = g.dot(direction);
         const double floor = *std::min_element(recent.begin(), recent.end());
         double length = 1;
-        double next = log_value(problem.objective, search.M + M_direction);
+        double next = 0;  // nearly always accepted, so that the slope is wanted, too
+        slope_M = log_gradient(problem.objective, search.M + M_direction, &next);
         while (!(next >= floor + 1e-4 * length * slope) && length > 1e-10) {
             const double fitted = 0.5 * length * length * slope / (value + length * slope - next);
             length =
@@ -103,8 +110,8 @@ WeightSearch ascend(const WeightProblem& problem, const VectorXd& start, double 
         if (!(length > 1e-10)) break;
         search.weights += length * direction;
         search.M += length * M_direction;
-        const VectorXd g_next =
-            problem.set.sensitivities(log_gradient(problem.objective, search.M));
+        if (length < 1) slope_M = log_gradient(problem.objective, search.M);
+        const VectorXd g_next = problem.set.sensitivities(slope_M);
         const double curvature = -length * direction.dot(g_next - g);
         const double moved = length * length * direction.squaredNorm();
         step = curvature > 0 ? std::clamp(moved / curvature, 1e-10, 1e10) : 1e10;

@@ -11,8 +11,8 @@ VectorXd project_on_capped_simplex(const VectorXd& point, const VectorXd& upper,
 
 /// Logarithm of the criterion (D: value / parameters, whose exponential is degree 1).
 double log_value(const Objective& objective, const MatrixXd& M);
-/// Its gradient by M.
-MatrixXd log_gradient(const Objective& objective, const MatrixXd& M);
+/// Its gradient by M and, unless null, log_value().
+MatrixXd log_gradient(const Objective& objective, const MatrixXd& M, double* log_value = nullptr);
 
 /// What spectral projected gradient works on: members' weights in [0, upper] that sum to total.
 struct WeightProblem {

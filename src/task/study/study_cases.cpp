@@ -8,7 +8,7 @@
 namespace posewise::detail {
 namespace {
 
-constexpr double proof_seconds = 0.01;
+constexpr Index few_candidates = 200;
 
 /// Of many candidates two kicks find choices as good as any, for all that calibrating can tell; of
 /// few more are needed, and take no longer.
@@ -38,7 +38,12 @@ SelectOptions study_selection(const StudyOptions& options, const Campaign& campa
     selection.pose_count = pose_count;
     selection.starts = options.starts;
     selection.kicks = kick_count(candidate_count);
-    selection.proof = proof_seconds;
+    if (candidate_count <= few_candidates) {
+        selection.proof = 0.01;  // often ends the search
+    } else {
+        selection.proof = 0;  // nobody asks for the bound
+        selection.gap = 1e-3;
+    }
     if (campaign.spread.is_prior) selection.held_rows = detail::prior_rows(campaign);
     selection.least_distance = options.least_distance;
     selection.seed = options.seed.value();
