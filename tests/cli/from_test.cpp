@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <regex>
 #include <sstream>
 
 #include "program.hpp"
@@ -59,11 +60,15 @@ std::string copy_by_hand(const std::string& campaign, const Json& estimate, bool
     return text;
 }
 
-/// Less the lines that name files or estimates, and the bound that is searched only.
+/// Less the lines that name files or estimates, and the bound that is searched only. Joints of a
+/// plan to a tenth of a degree: they are where a flat optimum was found.
 std::string without_names(const std::string& text) {
+    static const std::regex hundredths(R"((\.\d)\d\b)");
+    static const std::regex pose(R"(p\d+ .*)");
     std::istringstream lines(text);
     std::string kept;
     for (std::string line; std::getline(lines, line);) {
+        if (std::regex_match(line, pose)) line = std::regex_replace(line, hundredths, "$1");
         if (line.starts_with("from:") || line.starts_with("plan:")) continue;
         if (line.starts_with("searched:")) continue;
         kept += line + '\n';

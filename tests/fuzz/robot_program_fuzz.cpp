@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -79,6 +80,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const auto& [format, name] : formats) {
         const auto read_it = [kind = format](const std::string& path) { read(path, kind); };
         testing::read_or_refuse(data, size, name, read_it);
+        const auto corrected = io::target_format_names();
+        const std::string called(io::program_format_name(format));
+        if (std::ranges::find(corrected, called) == corrected.end()) continue;
         const auto replace_it = [kind = format](const std::string& path) { replace(path, kind); };
         testing::read_or_refuse(data, size, name, replace_it);
     }
