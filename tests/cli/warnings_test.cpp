@@ -112,7 +112,7 @@ TEST_F(Warnings, OfFilesWithoutThemAreNone) {
     json document = json::parse(text_of("e.json"));
     document.erase("warnings");
     write_text("old.json", document.dump());
-    run_well("correct " + fanuc_design + " old.json --poses p.csv");
+    run_well("correct " + fanuc_design + " old.json --poses s.csv");
     run_well("report old.json -o page.html");
 }
 

@@ -15,7 +15,7 @@ TEST(DescribeLimitViolation, NamesTheFirstJointBeyondItsLimits) {
     EXPECT_EQ(describe_limit_violation(robot, Eigen::Vector2d(0, 0.3)),
               "lift is 300 mm, must be from 0 to 250 mm");
     EXPECT_EQ(describe_limit_violation(robot, Eigen::Vector2d(-1.00001, 0.3)),
-              "q1 is -57.29635 deg, must be from -57.29578 to 57.29578 deg");
+              "q1 is -57.2963525 deg, must be from -57.2957795 to 57.2957795 deg");
 }
 
 }  // namespace
