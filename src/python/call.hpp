@@ -75,6 +75,13 @@ auto call(const CallOptions& options, const Compute& compute) {
     }
 }
 
+/// As above for what takes none of these options, `compute()`.
+template <typename Compute>
+auto call(const Compute& compute) {
+    return call(CallOptions{std::nullopt, 0, pybind11::none()},
+                [&](const CallControl&) { return compute(); });
+}
+
 /// What `compute()` returns, for what takes less time than to start a thread: without the
 /// interpreter's lock, and on this thread alone.
 template <typename Compute>

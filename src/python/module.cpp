@@ -40,7 +40,7 @@ py::array_t<double> to_array(RowMatrixXd&& matrix, std::vector<py::ssize_t> shap
 // ---- Campaigns ----
 
 io::CampaignFile parse_campaign(const std::string& content, const std::string& path) {
-    return io::parse_campaign(content, path);
+    return call([&] { return io::parse_campaign(content, path); });
 }
 
 /// Blocks of all targets, as many rows for each pose: poses x rows x parameters.
@@ -92,20 +92,16 @@ void define_campaign(py::module_& module) {
                                [](const io::CampaignFile& file) { return parameter_scale(file); })
         .def_property_readonly("is_prior",
                                [](const io::CampaignFile& file) { return file.spread.is_prior; })
-        .def("planned", [](const io::CampaignFile& file,
-                           std::optional<bool> prior) { return io::planned_campaign(file, prior); })
         .def("with_sensor",
              [](const io::CampaignFile& file, py::function predict, std::vector<std::string> names,
                 std::vector<bool> is_angle, VectorXd sigmas,
                 const std::vector<std::optional<Vector3d>>& targets,
                 std::vector<std::string> unknown, std::vector<bool> unknown_is_angle,
                 const VectorXd& values) {
-                 return with_sensor(file,
-                                    std::make_shared<const FunctionSensor>(FunctionSensorParts{
-                                        std::move(predict), std::move(names), std::move(is_angle),
-                                        std::move(sigmas), Targets(targets), std::move(unknown),
-                                        std::move(unknown_is_angle)}),
-                                    values);
+                 const auto sensor = std::make_shared<const FunctionSensor>(FunctionSensorParts{
+                     std::move(predict), std::move(names), std::move(is_angle), std::move(sigmas),
+                     Targets(targets), std::move(unknown), std::move(unknown_is_angle)});
+                 return call([&] { return with_sensor(file, sensor, values); });
              })
         .def("jacobian", &jacobian)
         .def("flange", &flange)
@@ -329,7 +325,8 @@ std::vector<std::pair<bool, RowMatrixXd>> predict(const io::CampaignFile& campai
     Campaign calibrated = with_model_error(campaign, earlier.estimate);
     if (earlier.estimate.spread) calibrated.spread = *earlier.estimate.spread;
     std::vector<std::pair<bool, RowMatrixXd>> tables;
-    for (const ErrorPrediction& prediction : predict_errors(calibrated, earlier.estimate, q)) {
+    const auto predictions = call([&] { return predict_errors(calibrated, earlier.estimate, q); });
+    for (const ErrorPrediction& prediction : predictions) {
         RowMatrixXd table(q.rows() + 1, 5);
         const auto state = [&](Index row, const PredictedError& error) {
             table.row(row) << error.parameters, error.model, error.noise, error.total(),
@@ -439,12 +436,17 @@ PYBIND11_MODULE(_posewise, module) {
     module.def("verify_plain", &verify_plain);
     module.def("choose", &choose_of_campaign);
     module.def("verify", &verify_of_campaign);
-    module.def("rate_blocks", &rate_blocks);
+    module.def("rate_blocks", [](const posewise::RowMatrixXd& stacked, posewise::Index poses,
+                                 const PlainBlocks& blocks) {
+        return call_here([&] { return rate_blocks(stacked, poses, blocks); });
+    });
     module.def("plan", &plan_campaign);
     module.def("write_plan", [](const std::string& document_path, const std::string& path,
                                 const posewise::io::CampaignFile* campaign, std::string csv,
                                 std::string targets) {
-        write_plan(document_path, path, campaign, {std::move(csv), std::move(targets)});
+        call_here([&] {
+            write_plan(document_path, path, campaign, {std::move(csv), std::move(targets)});
+        });
     });
     module.def("calibrate", &calibrate_campaign);
     module.def("predict", &predict);

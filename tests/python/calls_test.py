@@ -93,6 +93,8 @@ def test_threads_do_not_matter(blocks):
 
 def choose_in_child(seed):
     J = np.random.default_rng(seed).normal(size=(40, 3, 8))
+    campaign = pw.Campaign.from_yaml(designs / "abb_irb120" / "campaign.yaml")
+    assert len(campaign.joints) == 6
     return pw.select(J, 5, threads=2).value
 
 

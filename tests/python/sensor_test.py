@@ -97,3 +97,15 @@ def test_a_wrong_function_is_told(fanuc):
     for count in (3, 300):
         with pytest.raises(ZeroDivisionError, match="mine"):
             fanuc.with_sensor(make_sensor(raising)).jacobian(np.zeros((count, 6)), threads=2)
+
+
+def test_threads_wait_for_each_other_while_a_campaign_is_made():
+    rows = [
+        {"a_mm": 0, "alpha_deg": 90, "d_mm": 300, "theta_deg": 0, "joint": "q1", "limits_deg": [-90, 90]},
+        {"a_mm": 400, "alpha_deg": 0, "d_mm": 0, "theta_deg": 0, "joint": "q2", "limits_deg": [-60, 60]},
+    ]
+    sensor = pw.Sensor(directions, ["right_rad", "down_rad"], 1e-4, targets=[None],
+                       unknowns={"target1.x_m": 0.0, "target1.y_m": 0.0, "target1.z_m": 0.1})
+    base = {"position_mm": [0, 0, 3000], "rpy_deg": [0, 0, 0]}
+    for _ in range(20):
+        pw.Campaign.from_dh(rows, sensor=sensor, robot={"errors": "offsets"}, base=base)
