@@ -115,8 +115,11 @@ class Files(AbstractContextManager["Files"]):
     def warn(self, sentences: Iterable[str]) -> list[str]:
         """Gives the library's warnings as Python's; returns them."""
         spoken = [self.spoken(sentence) for sentence in sentences]
+        level, frame = 2, sys._getframe(1)  # up to the caller of the package
+        while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
+            level, frame = level + 1, frame.f_back
         for sentence in spoken:
-            warnings.warn(sentence, Doubt, stacklevel=4)
+            warnings.warn(sentence, Doubt, stacklevel=level)
         return spoken
 
 
@@ -159,11 +162,19 @@ def _plain(value: Any) -> Any:
     return value
 
 
+def check_number(name: str, value: Any, least: float, *, whole: bool = False) -> None:
+    """Raises InputError for what is no number from ``least`` on; None passes."""
+    if value is None:
+        return
+    kinds = (int, np.integer) if whole else (int, float, np.integer, np.floating)
+    if not isinstance(value, kinds) or isinstance(value, bool) or not value >= least:
+        kind = "a whole number" if whole else "a number"
+        raise InputError(f"`{name}` is {value!r}; must be {kind} from {least:g}")
+
+
 def call_options(threads: int | None, time: float | None, progress: Progress) -> Any:
-    if threads is not None and (isinstance(threads, bool) or threads < 1):
-        raise InputError(f"`threads` is {threads}; must be at least 1")
-    if time is not None and not time > 0:
-        raise InputError(f"`time` is {time}; must be seconds above 0")
+    check_number("threads", threads, 1, whole=True)
+    check_number("time", time, 1e-3)
     shown = _show_progress() if progress is True else progress or None
     return _posewise.CallOptions(threads=threads, time=time or 0.0, progress=shown)
 

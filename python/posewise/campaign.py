@@ -15,7 +15,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from . import _posewise
-from ._calls import Files, InputError, call_options
+from ._calls import Files, InputError, call_options, check_number
 
 Array = npt.NDArray[np.float64]
 Configurations = Union[pd.DataFrame, npt.ArrayLike]
@@ -268,10 +268,14 @@ class Campaign:
         expected size, so without units: what :func:`posewise.select` takes. With ``scaled=False`` in
         m per m and m per rad.
         """
+        check_number("repeats", repeats, 1)
         with Files():
             return np.asarray(
                 self._core.jacobian(
-                    self.configurations(q), scaled, repeats, call_options(threads, None, None)
+                    self.configurations(q),
+                    scaled,
+                    1.0 if repeats is None else float(repeats),
+                    call_options(threads, None, None)
                 )
             )
 

@@ -22,6 +22,7 @@ from ._calls import (
     answers_html,
     as_json,
     call_options,
+    check_number,
 )
 from .calibration import Estimate
 from .campaign import Array, Campaign
@@ -183,6 +184,7 @@ class _Robot:
 
 def as_blocks(J: npt.ArrayLike, name: str, rows: int | None = None) -> tuple[Array, int]:
     """Stacked rows of Jacobians (poses, rows, parameters) or (poses, parameters), and rows of each."""
+    check_number("rows", rows, 1, whole=True)
     try:
         array = np.asarray(J)
         if array.dtype.kind not in "fiub":
@@ -315,6 +317,7 @@ def select(
         "proof": proof,
         "seed": seed,
     }
+    check_number("random", random, 1, whole=True)
     options = call_options(threads, time, progress)
     labels = _labels(groups)
     with Files() as files:

@@ -34,8 +34,10 @@ def message(error):
         ({"k": 6, "prior": -np.ones(8)}, "prior", "above 0"),
         ({"k": 6, "prior": -np.eye(8)}, "prior", "positive definite"),
         ({"k": 6, "random": 5}, "candidates", "campaign"),
-        ({"k": 6, "threads": 0}, "threads", "at least 1"),
-        ({"k": 6, "time": -1}, "time", "above 0"),
+        ({"k": 6, "threads": 0}, "threads", "from 1"),
+        ({"k": 6, "threads": "2"}, "threads", "whole number"),
+        ({"k": 6, "rows": "3"}, "rows", "whole number"),
+        ({"k": 6, "time": -1}, "time", "from 0.001"),
         ({"k": 6, "seed": -1}, "seed", "seed"),
         ({"k": 6, "proof": float("nan")}, "proof", "nan"),
         ({"k": 6, "groups": [1, 2]}, None, "group"),
@@ -124,6 +126,12 @@ def test_other_units_and_indices_give_the_same(fanuc, measurements):
     np.testing.assert_allclose(
         fanuc.jacobian(degrees), fanuc.jacobian(measurements), rtol=1e-9, atol=1e-9
     )
+
+
+@pytest.mark.parametrize("repeats", ["2", 0, float("nan"), True])
+def test_what_is_no_number_of_repeats(fanuc, repeats):
+    with pytest.raises(pw.InputError, match="repeats"):
+        fanuc.jacobian(np.zeros((1, 6)), repeats=repeats)
 
 
 @pytest.mark.parametrize("q", [np.zeros(5), np.zeros((2, 7)), np.full((1, 6), np.nan), "q", None])
@@ -221,3 +229,9 @@ def test_study_of_blocks(blocks):
     ]:
         with pytest.raises(pw.InputError, match=words):
             pw.study(blocks, **wrong)
+
+
+def test_warnings_point_at_the_caller(fanuc, measurements, recwarn):
+    pw.calibrate(fanuc, measurements.assign(note=1), folds=0)
+    pw.select(fanuc, 12, measurements=measurements.assign(note=1), starts=1)
+    assert len(recwarn) >= 2 and {one.filename for one in recwarn} == {__file__}
