@@ -14,6 +14,7 @@ import subprocess
 import sys
 import sysconfig
 import tempfile
+import tomllib
 import zipfile
 
 root = pathlib.Path(__file__).resolve().parent.parent
@@ -26,14 +27,21 @@ def _version() -> str:
 
 
 def _metadata() -> str:
-    return (
-        f"Metadata-Version: 2.1\nName: posewise\nVersion: {_version()}\n"
-        "Summary: Which poses to measure when a robot is calibrated\nLicense: BSD-3-Clause\n"
-        "Requires-Python: >=3.11\nRequires-Dist: numpy\nRequires-Dist: pandas\n"
-        "Provides-Extra: plot\nRequires-Dist: matplotlib; extra == 'plot'\n"
-        "Provides-Extra: progress\nRequires-Dist: tqdm; extra == 'progress'\n"
-        "Description-Content-Type: text/markdown\n\n" + (root / "python" / "README.md").read_text()
-    )
+    project = tomllib.loads((root / "pyproject.toml").read_text())["project"]
+    lines = [
+        "Metadata-Version: 2.1",
+        f"Name: {project['name']}",
+        f"Version: {_version()}",
+        f"Summary: {project['description']}",
+        f"License: {project['license']['text']}",
+        f"Requires-Python: {project['requires-python']}",
+    ]
+    lines += [f"Requires-Dist: {name}" for name in project["dependencies"]]
+    for extra, needed in project["optional-dependencies"].items():
+        lines.append(f"Provides-Extra: {extra}")
+        lines += [f"Requires-Dist: {name}; extra == '{extra}'" for name in needed]
+    lines.append("Description-Content-Type: text/markdown")
+    return "\n".join(lines) + "\n\n" + (root / project["readme"]).read_text()
 
 
 def _tag() -> str:

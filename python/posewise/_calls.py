@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Union
+from typing import Any, Protocol, Union
 
 import numpy as np
 import pandas as pd
@@ -58,6 +58,15 @@ def with_keywords(message: str) -> str:
     return re.sub(r"`([\w.]+)`", lambda m: f"`{_keywords.get(m.group(1), m.group(1))}`", message)
 
 
+class Shown(Protocol):
+    """A result of the library."""
+
+    @property
+    def document(self) -> Mapping[str, Any]: ...
+    @property
+    def text(self) -> str: ...
+
+
 class Files(AbstractContextManager["Files"]):
     """Tables and documents as files for one call of the library.
 
@@ -91,9 +100,12 @@ class Files(AbstractContextManager["Files"]):
         as_written(value).to_csv(path, index=False)
         return path
 
-    def text(self, value: str, name: str) -> str:
+    def result(self, value: Shown | None, name: str) -> str:
+        """The document of a plan or an estimate; "" for None."""
+        if value is None:
+            return ""
         path = self.path(name, ".json")
-        Path(path).write_text(value, encoding="utf-8")
+        Path(path).write_text(json.dumps(value.document), encoding="utf-8")
         return path
 
     def __exit__(
@@ -138,6 +150,11 @@ def as_written(table: pd.DataFrame) -> pd.DataFrame:
 
 def read_table(path: str) -> pd.DataFrame:
     return pd.read_csv(path, dtype={"config": str}, float_precision="round_trip")
+
+
+def names(ids: Iterable[Any]) -> list[str]:
+    """Ids of configurations as files have them."""
+    return [str(one) for one in ids]
 
 
 def as_json(function: str, keywords: Mapping[str, Any]) -> str:
@@ -200,15 +217,3 @@ def _show_progress() -> Callable[[int, int], None]:
             bar.close()
 
     return advance
-
-
-def answers_html(document: Mapping[str, Any]) -> str:
-    """What people ask of a result first, as a page shows it."""
-    from html import escape
-
-    rows = "".join(
-        f"<tr><th style='text-align:left'>{escape(a['question'])}</th>"
-        f"<td style='text-align:left'>{escape(a['text'])}</td></tr>"
-        for a in document.get("answers", [])
-    )
-    return f"<table>{rows}</table>"

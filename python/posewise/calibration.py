@@ -14,7 +14,8 @@ import numpy as np
 import pandas as pd
 
 from . import _posewise
-from ._calls import Files, InputError, Progress, Table, answers_html, as_json, call_options
+from ._calls import Files, Progress, Table, as_json, call_options, names
+from ._results import Result, read_result, symmetric
 from .campaign import Campaign, Configurations
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Estimate:
+class Estimate(Result):
     """What a calibration found. Data only: it can be pickled."""
 
     campaign: Campaign
@@ -33,16 +34,8 @@ class Estimate:
     @classmethod
     def read(cls, path: str | os.PathLike[str], campaign: Campaign) -> Estimate:
         """An estimate from its file."""
-        try:
-            text = Path(path).read_text(encoding="utf-8")
-            document = json.loads(text)
-            if document.get("kind") != "posewise estimate":
-                raise ValueError
-        except OSError as error:
-            raise InputError(f"{os.fspath(path)}: cannot be read: {error.strerror}") from None
-        except (ValueError, AttributeError):
-            raise InputError(f"{os.fspath(path)}: is no estimate of posewise") from None
-        return cls(campaign, text, "", list(document.get("warnings", [])))
+        text = read_result(path, "estimate")
+        return cls(campaign, text, "", list(json.loads(text).get("warnings", [])))
 
     @cached_property
     def document(self) -> dict[str, Any]:
@@ -54,12 +47,8 @@ class Estimate:
     def covariance(self) -> pd.DataFrame:
         """Covariance of all parameters, m and rad."""
         stated = self.document["covariance"]
-        names = pd.Index(stated["parameters"], name="parameter")
-        matrix = np.zeros((len(names), len(names)))
-        for i, row in enumerate(stated["rows_si"]):
-            matrix[i, : len(row)] = row
-            matrix[: len(row), i] = row
-        return pd.DataFrame(matrix, index=names, columns=names)
+        index = pd.Index(stated["parameters"], name="parameter")
+        return pd.DataFrame(symmetric(stated["rows_si"]), index=index, columns=index)
 
     @cached_property
     def parameters(self) -> pd.DataFrame:
@@ -68,17 +57,17 @@ class Estimate:
         base.x to base.rz are the base's position and rotation vector in the instrument's frame;
         their deviations are those of a small step about it.
         """
-        names = self.covariance.index
+        index = self.covariance.index
         values = _values(self.document)
-        sigma = pd.Series(np.sqrt(np.diag(self.covariance)), index=names)
+        sigma = pd.Series(np.sqrt(np.diag(self.covariance)), index=index)
         units = {name: unit for name, (_, unit) in values.items()}
         return pd.DataFrame(
             {
-                "value": [values.get(name, (np.nan, ""))[0] for name in names],
+                "value": [values.get(name, (np.nan, ""))[0] for name in index],
                 "sigma": sigma.to_numpy(),
-                "unit": [units.get(name, "") for name in names],
+                "unit": [units.get(name, "") for name in index],
             },
-            index=names,
+            index=index,
         )
 
     @property
@@ -116,7 +105,7 @@ class Estimate:
         """
         with Files() as files:
             tables = _posewise.predict(
-                self.campaign._core, files.text(self.json, "estimate"), self.campaign.configurations(q)
+                self.campaign._core, files.result(self, "estimate"), self.campaign.configurations(q)
             )
         index = q.index if isinstance(q, pd.DataFrame) else None
         frames: list[pd.DataFrame] = []
@@ -136,12 +125,6 @@ class Estimate:
         part = target.with_name(target.name + ".part")
         part.write_text(self.json, encoding="utf-8")
         part.replace(target)
-
-    def __str__(self) -> str:
-        return self.text
-
-    def _repr_html_(self) -> str:
-        return answers_html(self.document)
 
     def plot(self, ax: Any = None) -> Any:
         """Draws nominal and calibrated error of held-out poses; needs matplotlib."""
@@ -229,7 +212,7 @@ def calibrate(
     keywords = {
         "refit": refit,
         "limit_mm": limit_mm,
-        "exclude": [str(one) for one in exclude] or None,
+        "exclude": names(exclude),
         "free": free,
         "prior": prior,
         "sizes": sizes,
@@ -247,10 +230,10 @@ def calibrate(
             campaign._core,
             files.table(measurements, "measurements"),
             as_json("calibrate", keywords),
-            "" if plan is None else files.text(json.dumps(plan.document), "plan"),
+            files.result(plan, "plan"),
             points_unit or "",
             files.table(validate, "validate"),
-            "" if estimate is None else files.text(estimate.json, "estimate"),
+            files.result(estimate, "estimate"),
             force,
             call_options(threads, time, progress),
         )

@@ -99,7 +99,7 @@ class Campaign:
 
     @classmethod
     def from_yaml(cls, path: str | os.PathLike[str]) -> Campaign:
-        """Reads a campaign file (posewise help file explains its keys)."""
+        """Reads a campaign file (posewise help the-file explains its keys)."""
         try:
             content = Path(path).read_text(encoding="utf-8")
         except OSError as error:

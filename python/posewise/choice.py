@@ -14,16 +14,16 @@ import pandas as pd
 
 from . import _posewise
 from ._calls import (
-    Doubt,
     Files,
     InputError,
     Progress,
     Table,
-    answers_html,
     as_json,
     call_options,
     check_number,
+    names,
 )
+from ._results import Result, symmetric
 from .calibration import Estimate
 from .campaign import Array, Campaign
 
@@ -51,7 +51,7 @@ class Blocks:
 
 
 @dataclass(frozen=True)
-class Choice:
+class Choice(Result):
     """Chosen poses, how good they are, and the proof. Data only: it can be pickled."""
 
     document: dict[str, Any] = field(repr=False)  #: as ``posewise select --json`` prints it
@@ -103,11 +103,7 @@ class Choice:
     @property
     def M(self) -> Array:
         """The matrix that proves the bound, (parameters, parameters)."""
-        lower = self.document["certificate"]["M_lower"]
-        matrix = np.zeros((len(lower), len(lower)))
-        for i, row in enumerate(lower):
-            matrix[i, : i + 1] = matrix[: i + 1, i] = row
-        return matrix
+        return symmetric(self.document["certificate"]["M_lower"])
 
     def verify(self) -> pd.DataFrame:
         """Computes value, bound and efficiency again from the inputs and the certificate.
@@ -115,7 +111,7 @@ class Choice:
         One row for each finding; all ``is_right`` unless something is not as stated.
         """
         with Files() as files:
-            plan = files.text(json.dumps(self.document), "plan")
+            plan = files.result(self, "plan")
             options = call_options(None, None, None)
             if isinstance(self._source, Blocks):
                 result = _posewise.verify_plain(plan, self._source.core(), self._groups, options)
@@ -126,18 +122,11 @@ class Choice:
     def write(self, path: str | os.PathLike[str]) -> None:
         """Writes the plan file, as ``posewise select --out``."""
         with Files() as files:
-            _posewise.write_plan(
-                files.text(json.dumps(self.document), "plan"), os.fspath(path), None, "", ""
-            )
+            document = files.result(self, "plan")
+            _posewise.write_plan(document, os.fspath(path), None, "", "")
 
     def __len__(self) -> int:
         return len(self.ids)
-
-    def __str__(self) -> str:
-        return self.text
-
-    def _repr_html_(self) -> str:
-        return answers_html(self.document)
 
 
 def findings(document: str) -> pd.DataFrame:
@@ -168,15 +157,12 @@ class _Robot:
             test_poses=files.table(self.test_poses, "test_poses"),
         )
 
-    def estimate_path(self, files: Files) -> str:
-        return "" if self.estimate is None else files.text(self.estimate.json, "estimate")
-
     def verify(self, files: Files, plan: str, groups: list[int], options: Any) -> Any:
         return _posewise.verify(
             plan,
             self.campaign._core,
             self.tables(files),
-            self.estimate_path(files),
+            files.result(self.estimate, "estimate"),
             groups,
             options,
         )
@@ -227,6 +213,18 @@ def _prior_rows(prior: Prior, columns: int) -> Array:
     )
 
 
+def prior_flag(prior: Prior) -> bool | None:
+    """A prior that only says whether the sizes are it; None for others."""
+    return bool(prior) if isinstance(prior, (bool, np.bool_)) else None
+
+
+def campaign_prior(prior: Prior) -> bool | None:
+    flag = prior_flag(prior)
+    if flag is None and prior is not None:
+        raise InputError("`prior` must be True or False; the campaign states the sizes")
+    return flag
+
+
 def make_blocks(
     J: npt.ArrayLike, rows: int | None, prior: Prior, held: Any, test_poses: Any
 ) -> Blocks:
@@ -237,7 +235,7 @@ def make_blocks(
     if held is not None:
         known, held_rows = as_blocks(held, "held", rows if np.ndim(held) == 2 else None)
         held_count = len(known) // max(held_rows, 1)
-    if prior is not None and not isinstance(prior, (bool, np.bool_)):
+    if prior is not None and prior_flag(prior) is None:
         known = np.vstack([known, _prior_rows(prior, columns)])
         held_count = 0  # rows of no pose
     tests = np.zeros((0, columns))
@@ -304,7 +302,8 @@ def select(
     keywords = {
         "poses": k,
         "criterion": criterion,
-        "exclude": [str(one) for one in exclude] or None,
+        "prior": prior_flag(prior),
+        "exclude": names(exclude),
         "per_group": per_group,
         "repeat_limit": repeat_limit,
         "least_distance_deg": least_distance_deg,
@@ -328,16 +327,15 @@ def select(
                 raise InputError(
                     "select(): needs one of `candidates`, `measurements` and `random`, and no `rows`"
                 )
-            if not (prior is None or isinstance(prior, (bool, np.bool_))):
-                raise InputError("`prior` must be True or False; the campaign states the sizes")
+            has_prior = campaign_prior(prior)
             table = kinds[stated[0]] if stated[0] != "random" else None
             robot = _Robot(source, stated[0], table, random or 0, held, test_poses, estimate)
             result = _posewise.choose(
                 source._core,
                 robot.tables(files),
                 as_json("select", keywords),
-                None if prior is None else bool(prior),
-                robot.estimate_path(files),
+                has_prior,
+                files.result(estimate, "estimate"),
                 force,
                 labels,
                 options,
@@ -349,8 +347,6 @@ def select(
                 "select(): `candidates`, `measurements`, `random` and `estimate` go with a campaign"
             )
         blocks = make_blocks(source, rows, prior, held, test_poses)
-        if isinstance(prior, (bool, np.bool_)):
-            keywords["prior"] = bool(prior)
         result = _posewise.choose_plain(
             blocks.core(), as_json("select", keywords), labels, options
         )
@@ -406,7 +402,7 @@ def indices(
         raise InputError(f"`poses` must be indices from 0 to {count - 1}")
     parts = [blocks.matrix.reshape(count, blocks.rows, -1)[taken].reshape(-1, blocks.matrix.shape[1])]
     parts.append(blocks.held)
-    if isinstance(prior, (bool, np.bool_)) and prior:
+    if prior_flag(prior):
         parts.append(np.eye(blocks.matrix.shape[1]))
     with Files():
         values = _posewise.rate_blocks(
@@ -414,5 +410,3 @@ def indices(
         )
     return pd.Series(dict(values), name="value")
 
-
-__all__ = ["Choice", "Doubt", "design", "indices", "select"]

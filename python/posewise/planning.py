@@ -7,7 +7,6 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import pandas as pd
@@ -18,18 +17,18 @@ from ._calls import (
     InputError,
     Progress,
     Table,
-    answers_html,
     as_json,
     call_options,
     read_table,
 )
+from ._results import Result, read_result
 from .calibration import Estimate
 from .campaign import Campaign
 from .choice import findings
 
 
 @dataclass(frozen=True)
-class Plan:
+class Plan(Result):
     """Poses to measure, in visiting order. Data only: it can be pickled.
 
     Like its DataFrame :attr:`poses`, it has a length and columns.
@@ -46,15 +45,7 @@ class Plan:
     @classmethod
     def read(cls, path: str | os.PathLike[str], campaign: Campaign) -> Plan:
         """A plan from its file."""
-        try:
-            document = json.loads(Path(path).read_text(encoding="utf-8"))
-            if document.get("kind") != "posewise plan":
-                raise ValueError
-        except OSError as error:
-            raise InputError(f"{os.fspath(path)}: cannot be read: {error.strerror}") from None
-        except (ValueError, AttributeError):
-            raise InputError(f"{os.fspath(path)}: is no plan of posewise") from None
-        return cls(campaign, document)
+        return cls(campaign, json.loads(read_result(path, "plan")))
 
     @cached_property
     def poses(self) -> pd.DataFrame:
@@ -95,7 +86,7 @@ class Plan:
         """Checks every pose, the value and the predictions again; one row for each finding."""
         with Files() as files:
             result = _posewise.verify(
-                files.text(json.dumps(self.document), "plan"),
+                files.result(self, "plan"),
                 self.campaign._core,
                 _posewise.ChoiceTables(
                     kind=_posewise.CandidateKind.configurations,
@@ -104,7 +95,7 @@ class Plan:
                     held=files.table(self._held, "held"),
                     test_poses=files.table(self._workspace, "workspace"),
                 ),
-                "" if self._estimate is None else files.text(self._estimate.json, "estimate"),
+                files.result(self._estimate, "estimate"),
                 [],
                 call_options(None, None, None),
             )
@@ -122,7 +113,7 @@ class Plan:
             self._write(files, os.fspath(path), os.fspath(csv), os.fspath(targets))
 
     def _write(self, files: Files, path: str, csv: str, targets: str) -> None:
-        document = files.text(json.dumps(self.document), "plan")
+        document = files.result(self, "plan")
         _posewise.write_plan(document, path, self.campaign._core, csv, targets)
 
     def __len__(self) -> int:
@@ -130,12 +121,6 @@ class Plan:
 
     def __getitem__(self, column: Any) -> Any:
         return self.poses[column]
-
-    def __str__(self) -> str:
-        return self.text
-
-    def _repr_html_(self) -> str:
-        return answers_html(self.document)
 
     def plot(self, ax: Any = None) -> Any:
         """Draws the flange's places from above; needs matplotlib."""
@@ -226,11 +211,11 @@ def plan(
             campaign._core,
             as_json("plan", keywords),
             prior,
-            "" if estimate is None else files.text(estimate.json, "estimate"),
+            files.result(estimate, "estimate"),
             force,
             files.table(held, "held"),
             files.table(workspace, "workspace"),
-            "" if repair is None else files.text(json.dumps(repair.document), "repair"),
+            files.result(repair, "repair"),
             call_options(threads, time, progress),
         )
         document = json.loads(result[0])

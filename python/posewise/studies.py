@@ -13,13 +13,14 @@ import numpy.typing as npt
 import pandas as pd
 
 from . import _posewise
-from ._calls import Files, InputError, Progress, Table, answers_html, as_json, call_options
+from ._calls import Files, InputError, Progress, Table, as_json, call_options, names
+from ._results import Result
 from .campaign import Campaign
-from .choice import Prior, make_blocks
+from .choice import Prior, campaign_prior, make_blocks, prior_flag
 
 
 @dataclass(frozen=True)
-class Study:
+class Study(Result):
     """Accuracy against number of poses. Data only: it can be pickled.
 
     Like its DataFrame :attr:`table`, it has a length and columns.
@@ -60,12 +61,6 @@ class Study:
 
     def __getitem__(self, column: Any) -> Any:
         return self.table[column]
-
-    def __str__(self) -> str:
-        return self.text
-
-    def _repr_html_(self) -> str:
-        return answers_html(self.document)
 
     def plot(self, ax: Any = None) -> Any:
         """Draws the error held out against the number of poses; needs matplotlib."""
@@ -136,8 +131,6 @@ def _study_blocks(
         raise InputError("`subsets` must be indices by name: {'mine': [0, 7]}") from None
     with Files() as files:
         blocks = make_blocks(J, rows, prior, held, test_poses)
-        if isinstance(prior, (bool, np.bool_)):
-            keywords["prior"] = bool(prior)
         result = _posewise.study_plain(blocks.core(), as_json("study", keywords), own, options)
         return Study(json.loads(result[0]), result[1], files.warn(result[2]))
 
@@ -196,7 +189,8 @@ def study(
             "poses": _counts(poses),
             "criteria": [criteria] if isinstance(criteria, str) else criteria,
             "random": random,
-            "exclude": [str(one) for one in exclude] or None,
+            "prior": prior_flag(prior),
+            "exclude": names(exclude),
             "repeat_limit": repeat_limit,
             "starts": starts,
             "proof": proof,
@@ -205,10 +199,7 @@ def study(
     if any(one is not None for one in (subsets, rows, held, repeat_limit, proof)):
         raise InputError("study(): `subsets`, `rows`, `held`, `repeat_limit` and `proof` are of "
                          "Jacobians, not of a campaign")
-    if not (prior is None or isinstance(prior, (bool, np.bool_))):
-        raise InputError("`prior` must be True or False; the campaign states the sizes")
-    campaign = source
-    has_prior = None if prior is None else bool(prior)
+    has_prior = campaign_prior(prior)
     shared = {
         "poses": _counts(poses),
         "criteria": [criteria] if isinstance(criteria, str) else criteria,
@@ -229,14 +220,14 @@ def study(
                 "refine": refine,
             }
             keywords = as_json("study", {**shared, **simulated})
-            result = _posewise.simulate_study(campaign._core, keywords, has_prior, options)
+            result = _posewise.simulate_study(source._core, keywords, has_prior, options)
         else:
             keywords = as_json("study", {**shared, "splits": splits, "holdout": holdout})
             result = _posewise.study(
-                campaign._core,
+                source._core,
                 files.table(measurements, "measurements"),
                 keywords,
-                [str(one) for one in exclude],
+                names(exclude),
                 has_prior,
                 force,
                 options,

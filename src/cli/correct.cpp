@@ -56,7 +56,7 @@ struct CorrectArguments {
     std::string estimate;
     std::string poses;
     std::string out;
-    std::string format;  ///< of the program that `poses` is; empty: configurations (CSV)
+    std::string format;  ///< program format of `poses`; empty: it is a CSV of configurations
     std::string base = "estimate";
     std::array<double, 3> tool_mm{};
     double mm_per_mrad = 1;

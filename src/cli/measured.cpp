@@ -28,7 +28,7 @@ void warn_beyond_limits(const std::string& path, const io::CampaignFile& file,
 io::CampaignFile read_with_prior(const std::string& path, std::optional<bool> prior,
                                  const StopSignal& stop) {
     io::CampaignFile file = io::read_campaign(path, stop);
-    io::set_prior(file, prior.value_or(file.spread.is_prior), stop);
+    io::set_prior(file, prior, stop);
     return file;
 }
 

@@ -44,7 +44,7 @@ std::vector<io::CampaignFile> read_files(const StudyArguments& arguments) {
     }
     std::vector<io::CampaignFile> files = io::read_campaign(path, arguments.models);
     for (io::CampaignFile& file : files) {
-        io::set_prior(file, arguments.prior.value_or(file.spread.is_prior));
+        io::set_prior(file, arguments.prior);
     }
     return files;
 }
@@ -92,7 +92,7 @@ std::vector<SimulatedCampaign> list_variations(const StudyArguments& arguments,
         io::CampaignFile varied = compute_from("--vary " + variation.name, [&] {
             return io::parse_campaign(variation.content, path);
         });
-        io::set_prior(varied, arguments.prior.value_or(varied.spread.is_prior));
+        io::set_prior(varied, arguments.prior);
         if (!arguments.earlier.from.empty()) {  // what is to be warned of has been
             static_cast<Campaign&>(varied) = compute_from("--vary " + variation.name, [&] {
                 const EarlierUse use = arguments.earlier.use();

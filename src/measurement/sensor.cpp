@@ -5,26 +5,14 @@
 #include <cmath>
 
 #include "core/format.hpp"
+#include "differences.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/model/chain.hpp"
 
 namespace posewise {
 namespace {
 
-/// The flange after it moved by so much of a twist.
-Isometry3d moved(const Isometry3d& flange, const Twist& twist) {
-    Isometry3d motion(rotation_from_vector(twist.head<3>()));
-    motion.translation() = twist.tail<3>();
-    return motion * flange;
-}
-
-/// Slope of f at 0 by central differences at h and h / 2, extrapolated [Richardson 1911].
-template <typename Function>
-MatrixXd slope_at_zero(const Function& f) {
-    constexpr double h = 2e-3;  // m or rad of a joint
-    const auto slope = [&](double step) -> MatrixXd { return (f(step) - f(-step)) / (2 * step); };
-    return (4 * slope(h / 2) - slope(h)) / 3;
-}
+constexpr double pose_step = 2e-3;  // m or rad of a joint
 
 /// Of the numbers of an observation, with flange and world in one and all unknowns 0.
 VectorXd standard_deviations(const Sensor& sensor) {
@@ -53,6 +41,12 @@ std::string describe_sigmas(const Sensor& sensor) {
 }
 
 }  // namespace
+
+Isometry3d detail::moved(const Isometry3d& flange, const Twist& twist) {
+    Isometry3d motion(rotation_from_vector(twist.head<3>()));
+    motion.translation() = twist.tail<3>();
+    return motion * flange;
+}
 
 std::vector<bool> Sensor::unknown_is_angle() const {
     return std::vector<bool>(unknown_names().size(), false);
@@ -105,10 +99,10 @@ void Sensor::differentiate_positions(const Isometry3d& world_from_flange, const 
 void Sensor::differentiate_along(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                                  const Twist& direction, const TwistMatrix& twist_rates,
                                  const VectorXd& unknowns, Eigen::Ref<RowMatrixXd> J_rate) const {
-    J_rate = slope_at_zero([&](double step) -> MatrixXd {
+    J_rate = detail::slope_at_zero(pose_step, [&](double step) -> MatrixXd {
         RowMatrixXd J(J_rate.rows(), J_rate.cols());
-        differentiate(moved(world_from_flange, step * direction), twists + step * twist_rates,
-                      unknowns, J);
+        differentiate(detail::moved(world_from_flange, step * direction),
+                      twists + step * twist_rates, unknowns, J);
         return J;
     });
 }
@@ -116,8 +110,8 @@ void Sensor::differentiate_along(const Isometry3d& world_from_flange, const Twis
 MatrixXd Sensor::covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
                                  const VectorXd& unknowns) const {
     if (has_constant_covariance()) return MatrixXd::Zero(row_count(), row_count());
-    return slope_at_zero([&](double step) -> MatrixXd {
-        return covariance(moved(world_from_flange, step * direction), unknowns);
+    return detail::slope_at_zero(pose_step, [&](double step) -> MatrixXd {
+        return covariance(detail::moved(world_from_flange, step * direction), unknowns);
     });
 }
 

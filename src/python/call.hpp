@@ -28,6 +28,13 @@ struct CallOptions {
 struct CallControl {
     StopSignal stop;
     ProgressCallback progress;  ///< empty: nobody asked
+
+    /// Hands both to the options of a task.
+    template <typename Options>
+    void steer(Options& options) const {
+        options.stop = stop;
+        options.progress = progress;
+    }
 };
 
 inline ProgressCallback progress_of(const pybind11::object& callable) {

@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "measurement/differences.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/jacobian/identification.hpp"
@@ -30,24 +31,7 @@ void check_parts(const FunctionSensorParts& parts) {
     }
 }
 
-/// The flange moved by a small twist about the origin.
-Isometry3d moved(const Isometry3d& flange, Index axis, double step) {
-    Isometry3d motion = Isometry3d::Identity();
-    if (axis < 3) {
-        motion.linear() = Eigen::AngleAxisd(step, Vector3d::Unit(axis)).toRotationMatrix();
-    } else {
-        motion.translation()[axis - 3] = step;
-    }
-    return motion * flange;
-}
-
-/// Slope at 0 by central differences of two steps.
-template <typename Function>
-VectorXd slope_at_zero(const Function& f) {
-    constexpr double h = 1e-4;
-    const auto slope = [&](double step) -> VectorXd { return (f(step) - f(-step)) / (2 * step); };
-    return (4 * slope(h / 2) - slope(h)) / 3;
-}
+constexpr double difference_step = 1e-4;  // m or rad
 
 }  // namespace
 
@@ -95,20 +79,18 @@ void FunctionSensor::differentiate(const Isometry3d& world_from_flange, const Tw
                                    Eigen::Ref<RowMatrixXd> J_measured_parameters) const {
     MatrixXd J_twist(row_count(), 6);
     for (Index axis = 0; axis < 6; ++axis) {
-        J_twist.col(axis) = slope_at_zero([&](double step) {
-            return Sensor::predict(moved(world_from_flange, axis, step), unknowns);
+        J_twist.col(axis) = detail::slope_at_zero(difference_step, [&](double step) {
+            const Twist twist = step * Twist::Unit(axis);
+            return Sensor::predict(detail::moved(world_from_flange, twist), unknowns);
         });
     }
     J_measured_parameters.leftCols(twists.cols()) = J_twist.lazyProduct(twists);
     for (Index k = 0; twists.cols() + k < J_measured_parameters.cols(); ++k) {
-        if (k >= unknowns.size()) {
-            J_measured_parameters.col(twists.cols() + k).setZero();
-            continue;
-        }
-        J_measured_parameters.col(twists.cols() + k) = slope_at_zero([&](double step) {
-            return Sensor::predict(world_from_flange,
-                                   unknowns + step * VectorXd::Unit(unknowns.size(), k));
-        });
+        J_measured_parameters.col(twists.cols() + k) =
+            detail::slope_at_zero(difference_step, [&](double step) {
+                return Sensor::predict(world_from_flange,
+                                       unknowns + step * VectorXd::Unit(unknowns.size(), k));
+            });
     }
 }
 

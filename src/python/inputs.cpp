@@ -47,7 +47,7 @@ io::CampaignFile planned_campaign(const io::CampaignFile& campaign, const PlanRe
                                   bool is_forced, Sentences& warnings) {
     if (estimate.empty()) return io::planned_campaign(campaign, prior);
     io::CampaignFile file = campaign;
-    io::set_prior(file, prior.value_or(file.spread.is_prior));
+    io::set_prior(file, prior);
     file.planned_model.reset();
     static_cast<Campaign&>(file) =
         with_earlier(file, read_earlier(estimate, file, request.earlier, is_forced, warnings));
@@ -105,6 +105,19 @@ ChoiceInputs read_choice(const ChoiceTables& tables, const io::CampaignFile& cam
         inputs.options.test_poses = io::read_configurations(tables.test_poses, campaign).joints;
     }
     return inputs;
+}
+
+PlanningOptions read_planning(const PlanningTables& tables, const io::CampaignFile& campaign,
+                              const PlanRequest& request, Sentences& warnings) {
+    PlanningOptions options;
+    static_cast<PlanRequest&>(options) = request;
+    if (!tables.held.empty()) {
+        options.held = read_measured(tables.held, campaign, {}, warnings);
+    }
+    if (!tables.workspace.empty()) {
+        options.workspace = io::read_configurations(tables.workspace, campaign).joints;
+    }
+    return options;
 }
 
 ChoiceOptions read_plain(const PlainBlocks& blocks, const PlanRequest& request,

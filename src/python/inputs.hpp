@@ -51,6 +51,15 @@ ChoiceInputs read_choice(const ChoiceTables& tables, const io::CampaignFile& cam
                          const PlanRequest& request, const std::vector<Index>& groups,
                          Sentences& warnings);
 
+/// Tables of a plan, "" where there is none.
+struct PlanningTables {
+    std::string held;
+    std::string workspace;
+};
+/// What make_plan() and verify() need besides the campaign.
+PlanningOptions read_planning(const PlanningTables& tables, const io::CampaignFile& campaign,
+                              const PlanRequest& request, Sentences& warnings);
+
 /// Matrices of a choice from plain blocks; those of no rows are none.
 struct PlainBlocks {
     RowMatrixXd candidates;

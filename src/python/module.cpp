@@ -90,8 +90,6 @@ void define_campaign(py::module_& module) {
             [](const io::CampaignFile& file) { return parameter_is_angle(file); })
         .def_property_readonly("parameter_sizes",
                                [](const io::CampaignFile& file) { return parameter_scale(file); })
-        .def_property_readonly("is_prior",
-                               [](const io::CampaignFile& file) { return file.spread.is_prior; })
         .def("with_sensor",
              [](const io::CampaignFile& file, py::function predict, std::vector<std::string> names,
                 std::vector<bool> is_angle, VectorXd sigmas,
@@ -130,8 +128,7 @@ Result choose_plain(const PlainBlocks& blocks, const std::string& keywords, cons
     const PlanRequest request = choice_request(parse_keywords("select", keywords));
     return call(call_options, [&](const CallControl& control) {
         ChoiceOptions options = read_plain(blocks, request, groups);
-        options.stop = control.stop;
-        options.progress = control.progress;
+        control.steer(options);
         return to_result(choose(make_equal_blocks(blocks.candidates, blocks.rows), options), {});
     });
 }
@@ -160,8 +157,7 @@ Result choose_of_campaign(const io::CampaignFile& campaign, const ChoiceTables& 
             planned_campaign(campaign, request, prior, estimate, is_forced, warnings);
         ChoiceInputs inputs = read_choice(tables, file, request, groups, warnings);
         inputs.options.judge = judge(is_forced, warnings);
-        inputs.options.stop = control.stop;
-        inputs.options.progress = control.progress;
+        control.steer(inputs.options);
         const Plan plan = choose(file, std::move(inputs.candidates), inputs.options);
         return to_result(plan, warnings);
     });
@@ -176,12 +172,8 @@ Result verify_of_campaign(const std::string& plan_path, const io::CampaignFile& 
         const io::CampaignFile file = planned_campaign(
             campaign, plan.request, plan.request.has_prior, estimate, true, warnings);
         if (plan.is_continuous()) {
-            PlanningOptions options;
-            static_cast<PlanRequest&>(options) = plan.request;
-            if (!tables.held.empty()) options.held = read_measured(tables.held, file, {}, warnings);
-            if (!tables.test_poses.empty()) {
-                options.workspace = io::read_configurations(tables.test_poses, file).joints;
-            }
+            const PlanningOptions options =
+                read_planning({tables.held, tables.test_poses}, file, plan.request, warnings);
             return to_result(verify(plan, file, options), plan);
         }
         tables.kind = plan.kind;
@@ -223,15 +215,9 @@ Result plan_campaign(const io::CampaignFile& campaign, const std::string& keywor
         const io::CampaignFile file =
             planned_campaign(campaign, request, prior, estimate, is_forced, warnings);
         for (const OnAxis& one : find_on_axis(file)) warnings.push_back(describe(one));
-        PlanningOptions options;
-        static_cast<PlanRequest&>(options) = request;
-        if (!held.empty()) options.held = read_measured(held, file, {}, warnings);
-        if (!workspace.empty()) {
-            options.workspace = io::read_configurations(workspace, file).joints;
-        }
+        PlanningOptions options = read_planning({held, workspace}, file, request, warnings);
         if (!repaired.empty()) options.repaired = io::read_plan(repaired);
-        options.stop = control.stop;
-        options.progress = control.progress;
+        control.steer(options);
         if (target) {
             const TargetPlanning found = plan_for_target(file, options, *target);
             if (!found.planning) throw InputError(describe_shortfall(found));
@@ -282,7 +268,7 @@ Result calibrate_campaign(const io::CampaignFile& campaign, const std::string& m
         Sentences warnings;
         CalibrationOptions& options = request.options;
         io::CampaignFile file = campaign;
-        io::set_prior(file, request.prior.value_or(file.spread.is_prior), control.stop);
+        io::set_prior(file, request.prior, control.stop);
         if (request.learns_sizes) file.spread.is_open = *request.learns_sizes;
         if (!request.free.empty()) {
             static_cast<Campaign&>(file) = with_free_errors(file, request.free);
@@ -304,8 +290,7 @@ Result calibrate_campaign(const io::CampaignFile& campaign, const std::string& m
         if (!has_function_sensor(file)) {
             options.richer = [&] { return io::richer_campaigns(file, request.prior); };
         }
-        options.stop = control.stop;
-        options.progress = control.progress;
+        control.steer(options);
         const Calibration result = calibrate(file, measured, options);
         if (!result.is_identified()) throw InputError(result.estimate.undetermined);
         judge(is_forced, warnings)(result);
@@ -350,11 +335,10 @@ Result study_measured(const io::CampaignFile& campaign, const std::string& measu
     return call(call_options, [&](const CallControl& control) -> Result {
         Sentences warnings;
         io::CampaignFile file = campaign;
-        io::set_prior(file, prior.value_or(file.spread.is_prior), control.stop);
+        io::set_prior(file, prior, control.stop);
         const auto measured = read_measured(measurements, file, excluded, warnings);
         options.judge = judge(is_forced, warnings);
-        options.stop = control.stop;
-        options.progress = control.progress;
+        control.steer(options);
         const std::vector studies{study(file, measured, options)};
         if (studies.front().ending == Ending::NotIdentifiable) {
             throw InputError(studies.front().undetermined);
@@ -369,9 +353,8 @@ Result study_simulated(const io::CampaignFile& campaign, const std::string& keyw
     SimulatedStudyOptions options = simulated_study_options(parse_keywords("study", keywords));
     return call(call_options, [&](const CallControl& control) -> Result {
         io::CampaignFile file = campaign;
-        io::set_prior(file, prior.value_or(file.spread.is_prior), control.stop);
-        options.stop = control.stop;
-        options.progress = control.progress;
+        io::set_prior(file, prior, control.stop);
+        control.steer(options);
         const auto studies = simulate_study({{"", file, std::nullopt}}, options);
         return {io::with_sentences(io::to_json(studies), {}, answer(studies)),
                 format(studies.front()),
@@ -386,8 +369,7 @@ Result study_plain(const PlainBlocks& blocks, const std::string& keywords,
     return call(call_options, [&](const CallControl& control) -> Result {
         static_cast<ChoiceOptions&>(options) = read_plain(blocks, options, {});
         for (auto& [name, poses] : subsets) options.subsets.push_back({name, poses});
-        options.stop = control.stop;
-        options.progress = control.progress;
+        control.steer(options);
         const BlocksStudy found = study(make_equal_blocks(blocks.candidates, blocks.rows), options);
         return {io::to_json(found), format(found), {}};
     });

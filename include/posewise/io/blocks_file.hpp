@@ -12,7 +12,7 @@ namespace posewise::io {
 struct BlocksFile {
     Blocks blocks;
     Index rows_per_block = 0;
-    std::vector<std::string> names{};   ///< of the parameters; empty: the file names none
+    std::vector<std::string> names{};   ///< parameter names; empty: the file has none
     std::vector<std::string> doubts{};  ///< why the rows may not be meant so, a sentence each
 };
 

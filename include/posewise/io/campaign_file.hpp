@@ -64,9 +64,9 @@ struct CampaignFile : Campaign {
     bool has_controller_columns = false;  ///< measurements hold the controller's joints, so named
 };
 
-/// Overrides whether the expected sizes are priors. A full model without priors is reduced to what
-/// poses can tell apart; throws InputError if that is stopped.
-void set_prior(CampaignFile& campaign, bool is_prior, const StopSignal& stop = {});
+/// Overrides whether the expected sizes are priors; nothing: as the file states. A full model
+/// without priors is reduced to what poses can tell apart; throws InputError if that is stopped.
+void set_prior(CampaignFile& campaign, std::optional<bool> is_prior, const StopSignal& stop = {});
 
 /// Reads a campaign from YAML; designs/README.md explains every key. Throws InputError with
 /// path:line:column for anything missing, misspelt or out of range. A stop ends the search for an

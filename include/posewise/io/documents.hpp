@@ -37,7 +37,7 @@ std::string to_json(const Inspection& inspection);
 std::string to_json(const Inspection& inspection, const ReadingSearch& readings);
 
 std::string to_json(const Rating& rating, const Campaign& campaign);
-/// Of plain blocks whose parameters have these names, one each.
+/// As above for plain blocks; `names` has one for each parameter.
 std::string to_json(const Rating& rating, const std::vector<std::string>& names, bool has_prior);
 
 /// The plan as in its file `path`, that file, and the predictions.

@@ -17,7 +17,7 @@ struct TextSpan {
 /// A position that is stated by joint values.
 struct JointTarget {
     std::string id;                ///< "P[3]" of FANUC, else line and column: "12:14"
-    VectorXd joints;               ///< of the controller, rad
+    VectorXd joints;               ///< values of the controller's joints, rad
     std::vector<TextSpan> values;  ///< where each stands in the program
 };
 

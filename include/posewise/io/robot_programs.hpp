@@ -105,7 +105,7 @@ std::vector<ProgramStop> read_robot_program(const std::string& path, ProgramForm
 /// A pose that a program visits elsewhere than was sent.
 struct MovedPose {
     std::string id;
-    Index joint = 0;    ///< of the controller, the one that moved most
+    Index joint = 0;    ///< joint of the controller that moved most
     double change = 0;  ///< rad or m
 };
 

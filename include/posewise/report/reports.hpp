@@ -40,7 +40,7 @@ std::string format(const Inspection& inspection);
 /// Every index of measured configurations with `digits` significant digits, and the directions they
 /// hardly show: everything that `posewise indices` prints.
 std::string format(const Rating& rating, const Campaign& campaign, int digits = 6);
-/// Of plain blocks whose parameters have these names, one each.
+/// As above for plain blocks; `names` has one for each parameter.
 std::string format(const Rating& rating, const std::vector<std::string>& names, bool has_prior,
                    int digits = 6);
 
@@ -130,7 +130,7 @@ void write_study_csv(const std::vector<Study>& studies, const WriteText& write);
 
 /// Chosen, random and own subsets of plain blocks, a line for each pose count and criterion.
 std::string format(const BlocksStudy& study, int digits = 6);
-/// The same as CSV, a line for each of them: poses, criterion, who chose ("best", "random 5 %",
+/// Writes it as CSV, a line for each subset: poses, criterion, who chose ("best", "random 5 %",
 /// "random 50 %", "random 95 %", or the name of an own subset), value, bound, efficiency,
 /// candidates.
 void write_study_csv(const BlocksStudy& study, const WriteText& write);

@@ -25,7 +25,7 @@ struct BlocksStudyOptions : ChoiceOptions {
 
 /// How much some subset tells.
 struct SubsetValue {
-    double value = 0;       ///< of the criterion; minus infinity: does not identify the parameters
+    double value = 0;       ///< criterion; minus infinity: parameters are not identified
     double efficiency = 0;  ///< against the bound for its count, see Choice::efficiency
 };
 

@@ -329,9 +329,10 @@ ErrorModel parse_error_model(const std::string& name) {
                      detail::suggest(name, detail::words_of(error_models)));
 }
 
-void set_prior(CampaignFile& campaign, bool is_prior, const StopSignal& stop) {
-    const bool is_dropped = campaign.spread.is_prior && !is_prior;
-    campaign.spread.is_prior = is_prior;
+void set_prior(CampaignFile& campaign, std::optional<bool> is_prior, const StopSignal& stop) {
+    if (!is_prior) return;
+    const bool is_dropped = campaign.spread.is_prior && !*is_prior;
+    campaign.spread.is_prior = *is_prior;
     if (!is_dropped || campaign.error_model != ErrorModel::Full) return;
     static_cast<Campaign&>(campaign) = with_robot(campaign, irreducible_model(campaign, stop));
 }
@@ -359,10 +360,10 @@ std::vector<CampaignFile> read_campaign(const std::string& path,
 CampaignFile planned_campaign(const CampaignFile& campaign, std::optional<bool> prior,
                               const StopSignal& stop) {
     CampaignFile file = campaign;
-    set_prior(file, prior.value_or(file.spread.is_prior), stop);
+    set_prior(file, prior, stop);
     if (!file.planned_model) return file;
     CampaignFile planned = parse(file.content, file.path, file.planned_model, stop);
-    set_prior(planned, prior.value_or(planned.spread.is_prior), stop);
+    set_prior(planned, prior, stop);
     planned.fitted_pose_count = least_calibration_count(file, stop);
     return planned;
 }
@@ -374,7 +375,7 @@ std::vector<OtherCampaign> richer_campaigns(const CampaignFile& campaign,
         if (model <= campaign.error_model) return;
         try {
             CampaignFile other = parse(campaign.content, campaign.path, model, {});
-            set_prior(other, prior.value_or(other.spread.is_prior));
+            set_prior(other, prior);
             campaigns.push_back(
                 {"errors: " + std::string(error_model_name(model)), std::move(other)});
         } catch (const InputError&) {  // not of this robot
