@@ -176,6 +176,7 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     PlanningOptions options = read_planning_inputs(request, campaign);
     check_verification(arguments.verification, campaign, options);
     if (!sources.repaired.empty()) options.repaired = io::read_plan(sources.repaired);
+    options.richer = [&] { return io::richer_campaigns(campaign, arguments.prior); };
     options.stop = stop;
     const auto read = std::chrono::steady_clock::now();
     const TargetPlanning made = plan_with_progress(campaign, options, arguments);

@@ -7,6 +7,7 @@
 #include "files.hpp"
 #include "interrupt.hpp"
 #include "io/format/atomic_file.hpp"
+#include "page.hpp"
 #include "plot.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/io/documents.hpp"
@@ -21,7 +22,7 @@ void check_usage(const CLI::App& command, const StudyArguments& arguments) {
     check_only(command,
                {"--blocks", "--rows", "--variable", "--subset", "--augment", "--criteria",
                 "--poses", "--random", "--exclude", "--prior", "--starts", "--seed", "--time",
-                "--csv", "--plot", "--progress", "--json", "--help"},
+                "--csv", "--plot", "--report", "--progress", "--json", "--help"},
                "is not of a study of plain blocks (--blocks); must be left out");
     check_blocks_usage(plain.blocks, plain.sources);
     if (arguments.options.pose_counts.empty() && plain.subsets.empty()) {
@@ -52,7 +53,7 @@ void study_blocks(const CLI::App& command, const StudyArguments& arguments,
     if (!arguments.plot.empty()) detail::check_image_path(arguments.plot);
     std::vector<std::string> inputs{plain.blocks, plain.sources.augment};
     inputs.insert(inputs.end(), plain.subsets.begin(), plain.subsets.end());
-    check_outputs({}, inputs, {arguments.csv, arguments.plot}, common);
+    check_outputs({}, inputs, {arguments.csv, arguments.plot, arguments.page}, common);
     BlocksStudyOptions options = options_of(command, arguments);
     PlanSources& sources = options.sources;
     io::BlocksFile file = read_blocks(plain.blocks, sources);
@@ -76,16 +77,16 @@ void study_blocks(const CLI::App& command, const StudyArguments& arguments,
     if (study.ending != Ending::Converged) {
         print_warning("stopped early; the pose counts that are finished are shown");
     }
-    if (common.json) {
-        print_document(io::to_json(study));
-    } else {
-        print(format(study));
-    }
+    const Printed printed{answer(study), format(study), [&] { return io::to_json(study); }};
+    print(printed, common);
     if (!arguments.csv.empty()) {
         detail::write_files({{arguments.csv, "", {}, [&](const WriteText& write) {
                                   write_study_csv(study, write);
                               }}});
     }
+    io::PagePart part;
+    part.title = plain.blocks;
+    write_page(arguments.page, std::move(part), printed, common);
     if (arguments.plot.empty()) return;
     draw_plot(arguments.plot,
               [&](const std::string& image) { return detail::study_plot_script(study, image); });

@@ -3,6 +3,7 @@ import { rowsOf } from './core/residuals.js';
 import { watchTheme } from './core/theme.js';
 import { footer, header } from './sections/frame.js';
 import * as accuracy from './sections/accuracy_by_count.js';
+import * as blocks from './sections/blocks_study.js';
 import * as before from './sections/before_after.js';
 import * as budget from './sections/budget.js';
 import * as coverage from './sections/coverage.js';
@@ -18,7 +19,7 @@ import * as residuals from './sections/residual_plots.js';
 import * as verdict from './sections/verdict.js';
 
 const sections = [
-  verdict, poses, accuracy, before, map, residuals, parameters, models, coverage, budget, optimality, readBack, measured, printed,
+  verdict, poses, accuracy, blocks, before, map, residuals, parameters, models, coverage, budget, optimality, readBack, measured, printed,
 ];
 
 /** What a document that was edited by hand breaks is said in its place; the rest of the page stands. */

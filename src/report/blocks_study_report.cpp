@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/format.hpp"
@@ -69,7 +70,66 @@ std::string quote_field(const std::string& text) {
     return quoted + '"';
 }
 
+/// "by d, 20 of 200 candidates reach 98.21 % of the most that 20 can tell".
+std::string sum_up(const BlocksStudy& study, const BlocksStudyRow& row) {
+    const Criterion criterion = row.criterion;
+    if (row.chosen.poses.empty()) {
+        return fmt::format("{} of {} candidates do not identify the parameters", row.pose_count,
+                           study.candidate_count);
+    }
+    std::string text =
+        fmt::format("by {}, {} of {} candidates reach {} % of the largest value that is possible",
+                    criterion_name(criterion), row.pose_count, study.candidate_count,
+                    percent(row.chosen.efficiency));
+    if (row.random.subsets > 0) {
+        text += fmt::format("; half of {} random ones reach {} %", row.random.subsets,
+                            percent(row.random.p50.efficiency));
+    }
+    return text;
+}
+
+/// The least count whose choice tells as much as half of the random subsets with the most poses.
+std::string describe_saving(const BlocksStudy& study) {
+    const auto is_first = [&](const BlocksStudyRow& row) {
+        return row.criterion == study.criteria.front();
+    };
+    const auto last = std::find_if(study.rows.rbegin(), study.rows.rend(), is_first);
+    if (last->random.subsets == 0) return "";
+    const auto least = std::ranges::find_if(study.rows, [&](const BlocksStudyRow& row) {
+        return is_first(row) && row.chosen.value >= last->random.p50.value;
+    });
+    if (least == study.rows.end() || least->pose_count >= last->pose_count) return "";
+    return fmt::format("{} chosen ones tell as much as half of the random subsets of {}",
+                       least->pose_count, last->pose_count);
+}
+
+std::string describe_own(const BlocksStudy& study) {
+    std::string text;
+    for (const BlocksStudyRow& row : study.rows) {
+        for (const auto& [number, found] : row.own) {
+            text += fmt::format("{}{}: {} % by {}", text.empty() ? "" : "; ",
+                                detail::escape_controls(study.subsets[number].name),
+                                percent(found.efficiency), criterion_name(row.criterion));
+        }
+    }
+    return text;
+}
+
 }  // namespace
+
+std::vector<Answer> answer(const BlocksStudy& study) {
+    if (study.rows.empty()) return {};
+    const auto last = std::find_if(
+        study.rows.rbegin(), study.rows.rend(),
+        [&](const BlocksStudyRow& row) { return row.criterion == study.criteria.front(); });
+    std::vector<Answer> answers{{"value", "How much they tell", sum_up(study, *last)}};
+    const auto add = [&](const char* key, const char* question, const std::string& text) {
+        if (!text.empty()) answers.push_back({key, question, text});
+    };
+    add("saving", "What choosing saves", describe_saving(study));
+    add("own", "Own subsets", describe_own(study));
+    return answers;
+}
 
 std::string format(const BlocksStudy& study, int digits) {
     std::string text = format_table(chosen_table(study, digits));

@@ -39,6 +39,19 @@ const char* class_name(ErrorClass error_class) {
     return "other terms";
 }
 
+const char* unit_of(ErrorClass error_class) {
+    switch (error_class) {
+        case ErrorClass::Length:
+        case ErrorClass::Slide:
+        case ErrorClass::SlideHarmonic:
+            return "mm";
+        case ErrorClass::Gain:
+            return "per mille";
+        default:
+            return "mrad";
+    }
+}
+
 /// The robot's errors, those of a class together.
 std::map<ErrorClass, std::vector<Index>> members_by_class(const Chain& robot) {
     std::map<ErrorClass, std::vector<Index>> members;
@@ -47,7 +60,7 @@ std::map<ErrorClass, std::vector<Index>> members_by_class(const Chain& robot) {
     return members;
 }
 
-/// In mm or mrad.
+/// In mm, mrad or per mille.
 double root_mean_square(const VectorXd& values) {
     return mm_per_m * std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
 }
@@ -58,11 +71,9 @@ Table expected_class_table(const Campaign& campaign) {
     const VectorXd sizes = robot_error_sizes(campaign.spread, campaign.robot);
     Table table{{"class", "count", "expected", ""}, {}};
     for (const auto& [of_class, members] : members_by_class(campaign.robot)) {
-        const bool is_length = of_class == ErrorClass::Length || of_class == ErrorClass::Slide ||
-                               of_class == ErrorClass::SlideHarmonic;
         table.rows.push_back({class_name(of_class), std::to_string(members.size()),
                               format_short(root_mean_square(sizes(members)), 3),
-                              is_length ? "mm" : "mrad"});
+                              unit_of(of_class)});
     }
     return table;
 }

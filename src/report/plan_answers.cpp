@@ -84,6 +84,17 @@ std::string describe_sureness(const Planning& planning,
                               format_error(number.predicted, false));
 }
 
+/// Where a poorer model promises more than it keeps.
+std::string describe_left_out(const Planning& planning) {
+    if (!planning.left_out) return "";
+    const ErrorsLeftOut& errors = *planning.left_out;
+    return fmt::format(
+        "{} of \"{}\" are not fitted: if they are as large as expected, {} is left and not {}; "
+        "fitted as well, the same poses are expected to leave {}",
+        count_of(errors.error_count, "error"), errors.key, format_error(errors.expected, false),
+        format_error(errors.promised, false), format_error(errors.with_them, false));
+}
+
 std::string describe_limit(const ErrorBudget& budget) {
     return detail::describe_largest(
         {{budget.left_over, "what the robot's model cannot express"},
@@ -132,6 +143,7 @@ std::vector<Answer> complete(const Planning& planning, const std::string& accura
         if (!text.empty()) answers.push_back({key, question, text});
     };
     add("sureness", "How sure", describe_sureness(planning, simulated));
+    add("left_out", "Errors left out", describe_left_out(planning));
     if (planning.plan.efficiency > 0) add("proof", "How good", explain_proof(planning.plan));
     add("limit", "What limits it", describe_limit(planning.budget));
     add("influence", "Which pose matters most", describe_influence(planning));

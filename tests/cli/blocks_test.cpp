@@ -86,12 +86,19 @@ TEST_F(PlainBlocks, StudyIsDrawn) {
     EXPECT_NE(text_of("s.svg").find("proven bound"), std::string::npos);
 }
 
+TEST_F(PlainBlocks, StudyHasAPage) {
+    const std::string text = run_well("study --blocks b.npy -k 3..5 --random 9 --report s.html");
+    EXPECT_NE(text.find("of 30 candidates reach"), std::string::npos) << text;
+    const std::string page = text_of("s.html");
+    EXPECT_NE(page.find("\"kind\":\"posewise blocks study\""), std::string::npos);
+    EXPECT_NE(page.find("How much they tell"), std::string::npos);
+}
+
 TEST_F(PlainBlocks, NeedNoRobotsOptions) {
     for (const auto& [arguments, words] : std::vector<std::pair<std::string, std::string>>{
              {"study --blocks b.npy", "--poses: is required with --blocks"},
              {"study --blocks b.npy -k 4 --splits 2",
               "--splits: is not of a study of plain blocks"},
-             {"study --blocks b.npy -k 4 --report r.html", "--report: is not of a study of plain"},
              {"study --blocks b.txt -k 4", "--rows: is required with --blocks"},
              {"study a.yaml --simulate --rows 3", "--rows: goes with --blocks only"},
              {"study a.yaml --simulate --subset s.txt", "--subset requires --blocks"},

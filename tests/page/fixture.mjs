@@ -184,3 +184,18 @@ export function makeStudy(name = 'study') {
       models: [{ name: '', rows: [row(6, 1.08), row(8, 0.33), row(10, 0.238), row(12, 0.21), row(14, 0.208)] }] },
   };
 }
+
+/** A study of plain blocks by two criteria, with a subset of the caller's own. */
+export function makeBlocksStudy(name = 'blocks.npy') {
+  const row = (count, criterion, efficiency) => ({
+    pose_count: count, criterion, value: 100 * count, bound: (100 * count) / efficiency, efficiency, ending: 'converged', poses: [0, 1, 2],
+    random: { subsets: 30, unidentified: 0, value_p5: 40 * count, value_p50: 60 * count, value_p95: 80 * count, efficiency_p5: 0.4, efficiency_p50: 0.6, efficiency_p95: 0.8 },
+    subsets: count === 10 ? [{ name: 'mine.txt', value: 70 * count, efficiency: 0.7 }] : [],
+  });
+  return {
+    title: name, command: 'posewise study --blocks', made_at: '2026-11-27T12:00:00Z', printed: 'poses\n',
+    document: { kind: 'posewise blocks study', posewise_version: '0.1.0', format: 1, campaign: null, ending: 'converged', candidate_count: 200, parameter_count: 21, prior: false,
+      answers: [{ key: 'value', question: 'How much they tell', text: 'by d, 12 of 200 candidates reach 99.00 % of the largest value that is possible' }],
+      rows: ['d', 'a'].flatMap((criterion) => [row(8, criterion, 0.95), row(10, criterion, 0.98), row(12, criterion, 0.99)]) },
+  };
+}

@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { join } from 'node:path';
 import { drawn, launch, open, output, write } from './browser.mjs';
-import { documentOf, makeEstimate, makePlan, makeStudy, page } from './fixture.mjs';
+import { documentOf, makeBlocksStudy, makeEstimate, makePlan, makeStudy, page } from './fixture.mjs';
 
 let browser;
 before(async () => {
@@ -19,8 +19,9 @@ const sections = {
   estimate: ['Verdict', 'Poses', 'Before and after', 'Error map of the workspace', 'Residuals', 'Parameters', 'Model selection', 'Coverage: predicted against found',
     'Uncertainty budget', 'What it rests on'],
   study: ['Verdict', 'Accuracy against number of poses', 'Coverage: predicted against found', 'What it rests on', 'As printed'],
+  blocks: ['Verdict', 'Value against number of poses', 'What it rests on', 'As printed'],
 };
-const makers = { plan: () => makePlan(), estimate: () => makeEstimate({ errors: 54 }), study: () => makeStudy() };
+const makers = { plan: () => makePlan(), estimate: () => makeEstimate({ errors: 54 }), study: () => makeStudy(), blocks: () => makeBlocksStudy() };
 
 for (const kind of Object.keys(sections)) {
   test(`a ${kind} has its sections, figures with tables, and asks for nothing`, async () => {

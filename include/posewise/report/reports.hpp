@@ -27,6 +27,7 @@ std::vector<Answer> answer(const TargetPlanning& found,
                            const std::optional<SimulatedPlan>& simulated = std::nullopt);
 std::vector<Answer> answer(const Plan& choice);
 std::vector<Answer> answer(const std::vector<Study>& studies);
+std::vector<Answer> answer(const BlocksStudy& study);
 /// A paragraph for each, 100 columns wide, and an empty line.
 std::string format(const std::vector<Answer>& answers);
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "posewise/core/progress.hpp"
@@ -23,8 +25,20 @@ struct PlanningOptions : PlanRequest {
     std::optional<Plan> repaired;      ///< its poses are kept, except those dropped
     RowMatrixXd workspace;     ///< configurations where accuracy matters; empty: drawn in the cell
     Index drop_out_count = 1;  ///< poses that may be missing, see Planning::drop_outs
-    StopSignal stop{};         ///< ends the search with the best so far
+    /// Campaigns with richer errors, the richest last, for Planning::left_out. Nothing: none.
+    std::function<std::vector<OtherCampaign>()> richer{};
+    StopSignal stop{};  ///< ends the search with the best so far
     ProgressCallback progress{};
+};
+
+/// What errors do that a robot has and its model has not, if they are as large as expected. A
+/// poorer model has less to find, so it promises more. RMS over workspace and targets, m.
+struct ErrorsLeftOut {
+    std::string key;        ///< the richer model: "errors: full"
+    Index error_count = 0;  ///< errors that only the richer model has
+    double promised = 0;    ///< expected by the poorer model alone, model error included
+    double expected = 0;    ///< the same with what these errors do to its parameters and poses
+    double with_them = 0;   ///< expected if the richer model is fitted to the same poses
 };
 
 /// A plan, and how its making went.
@@ -41,9 +55,10 @@ struct Planning {
     std::optional<PredictedAccuracy> chosen;  ///< by the best choice from the pool, not moved
     InformationByNoise by_noise;              ///< for all poses
     ErrorBudget budget;
-    std::vector<DropOut> without_each;  ///< with each pose of the plan missing, in its order
-    std::vector<DropOut> drop_outs;     ///< the poses that hurt most, missing one after another
-    double duration = 0;                ///< s: all moves and standstills
+    std::vector<DropOut> without_each;      ///< with each pose of the plan missing, in its order
+    std::vector<DropOut> drop_outs;         ///< the poses that hurt most, missing one after another
+    double duration = 0;                    ///< s: all moves and standstills
+    std::optional<ErrorsLeftOut> left_out;  ///< nothing: no richer model, or an estimate tells
 };
 
 /// Proposes configurations to measure in the campaign's cell: draws a pool, chooses from it,

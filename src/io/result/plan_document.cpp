@@ -52,6 +52,14 @@ Json budget_to_json(const ErrorBudget& budget) {
             {"total_mm", mm_per_m * budget.total}};
 }
 
+Json left_out_to_json(const ErrorsLeftOut& left_out) {
+    return {{"errors", left_out.key},
+            {"error_count", left_out.error_count},
+            {"promised_mm", mm_per_m * left_out.promised},
+            {"expected_mm", mm_per_m * left_out.expected},
+            {"with_them_mm", mm_per_m * left_out.with_them}};
+}
+
 /// Poses that are missing: each alone (`is_value`: what that costs), or one after another.
 Json drop_outs_to_json(const Planning& planning, const std::vector<DropOut>& drop_outs,
                        bool is_value) {
@@ -173,6 +181,7 @@ Json planning_to_json(const Planning& planning, const std::string& path) {
                         {"shortest_s", tour.shortest_time},
                         {"blocked_count", tour.blocked_count}};
     add_judgement(document, planning);
+    document["left_out"] = planning.left_out ? left_out_to_json(*planning.left_out) : Json(nullptr);
     return document;
 }
 

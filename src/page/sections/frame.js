@@ -1,7 +1,7 @@
 import { el, saveFile } from '../core/dom.js';
 import { warningsOf } from './verdict.js';
 
-const kinds = { plan: 'Plan', estimate: 'Calibration', study: 'Study', export: 'Export' };
+const kinds = { plan: 'Plan', estimate: 'Calibration', study: 'Study', 'blocks study': 'Study of plain blocks', export: 'Export' };
 
 /** What was warned of while the page was made and no part has. */
 const ownWarnings = (page, parts) => warningsOf(page).filter((text) => !parts.some((part) => warningsOf(part.document).includes(text)));

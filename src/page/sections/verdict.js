@@ -4,7 +4,7 @@ import { answerExport } from './verdict_export.js';
 
 export const title = 'Verdict';
 
-export const isShown = ({ kind }) => ['plan', 'estimate', 'study', 'export'].includes(kind);
+export const isShown = ({ kind }) => ['plan', 'estimate', 'study', 'blocks study', 'export'].includes(kind);
 
 const sentence = (text) => `${text.slice(0, 1).toUpperCase()}${text.slice(1)}.`;
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "left_out.hpp"
 #include "plan_maker.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -19,6 +20,7 @@ Planning make_plan(const Campaign& campaign, const PlanningOptions& options) {
     const detail::PlanMaker maker(std::move(problem), options);
     Planning planning = maker.make(count, [](const Planning&) { return true; });
     maker.add_verification(planning);
+    detail::judge_left_out(planning, options);
     return planning;
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "left_out.hpp"
 #include "plan_maker.hpp"
 #include "planner/tour.hpp"
 #include "pool_choices.hpp"
@@ -367,7 +368,9 @@ TargetPlanning plan_for_target(const Campaign& campaign, const PlanningOptions& 
         return result;
     }
     Search(maker, options, result, least + target.robust_to).run();
-    if (result.planning) maker.add_verification(*result.planning);
+    if (!result.planning) return result;
+    maker.add_verification(*result.planning);
+    detail::judge_left_out(*result.planning, options);
     return result;
 }
 
