@@ -217,6 +217,7 @@ Result plan_campaign(const io::CampaignFile& campaign, const std::string& keywor
         for (const OnAxis& one : find_on_axis(file)) warnings.push_back(describe(one));
         PlanningOptions options = read_planning({held, workspace}, file, request, warnings);
         if (!repaired.empty()) options.repaired = io::read_plan(repaired);
+        options.richer = [&] { return io::richer_campaigns(file, prior); };
         control.steer(options);
         if (target) {
             const TargetPlanning found = plan_for_target(file, options, *target);

@@ -1,3 +1,5 @@
+#include "../../src/task/plan/left_out.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,13 +20,13 @@ namespace {
 class ErrorsLeftOutOfAPlan : public ::testing::Test {
   protected:
     ErrorsLeftOutOfAPlan() {
-        const Chain bare = testing::without_parameters(testing::cell_campaign().robot);
+        const Chain bare = without_parameters(testing::cell_campaign().robot);
         const Campaign cell = testing::cell_campaign();
         poorer_ = with_robot(cell, detail::complete_model(bare));
-        poorer_.spread = testing::population_spread(bare);
+        poorer_.spread = population_spread(bare);
         richer_ = with_robot(poorer_, detail::full_model(bare));
         options_.pose_count = 14;
-        options_.pool_count = 300;
+        options_.pool_count = 100;
         options_.starts = 1;
         options_.workspace_count = 20;
         options_.richer = [&] { return std::vector<OtherCampaign>{{"errors: full", richer_}}; };
@@ -91,13 +93,22 @@ TEST_F(ErrorsLeftOutOfAPlan, AreWhatSimulatedRobotsAreLeftWith) {
 }
 
 TEST_F(ErrorsLeftOutOfAPlan, AreNotToldWhereNothingIsRicherOrAnEstimateTells) {
-    options_.richer = [&] { return std::vector<OtherCampaign>{}; };
-    EXPECT_FALSE(make_plan(poorer_, options_).left_out);
-    options_.richer = [&] { return std::vector<OtherCampaign>{{"errors: full", poorer_}}; };
-    EXPECT_FALSE(make_plan(poorer_, options_).left_out);
-    options_.richer = [&] { return std::vector<OtherCampaign>{{"errors: full", richer_}}; };
-    options_.sources.estimate = "estimate.json";
-    EXPECT_FALSE(make_plan(poorer_, options_).left_out);
+    const auto richer = [&](const Campaign& campaign) {
+        return [&campaign] { return std::vector<OtherCampaign>{{"errors: full", campaign}}; };
+    };
+    options_.richer = richer(poorer_);
+    Planning planning = make_plan(poorer_, options_);
+    EXPECT_FALSE(planning.left_out);
+    options_.richer = [] { return std::vector<OtherCampaign>{}; };
+    detail::judge_left_out(planning, options_);
+    EXPECT_FALSE(planning.left_out);
+    options_.richer = richer(richer_);
+    planning.plan.request.sources.estimate = "estimate.json";
+    detail::judge_left_out(planning, options_);
+    EXPECT_FALSE(planning.left_out);
+    planning.plan.request.sources.estimate = "";
+    detail::judge_left_out(planning, options_);
+    EXPECT_TRUE(planning.left_out);
 }
 
 }  // namespace

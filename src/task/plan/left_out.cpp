@@ -42,7 +42,11 @@ Campaign weighed_as(const Campaign& poorer, Campaign richer) {
 double bias(const Planning& poorer, const Planning& richer, const Split& parameters) {
     const MatrixXd& C = richer.errors.by_parameters.matrix;
     const MatrixXd shown = richer.information(parameters.fitted, parameters.left_out);
-    const MatrixXd taken = poorer.information.llt().solve(shown);
+    // Each campaign scales parameters by the sizes that it expects.
+    const VectorXd scale = parameter_scale(richer.campaign)(parameters.fitted)
+                               .cwiseQuotient(parameter_scale(poorer.campaign));
+    const MatrixXd M = scale.asDiagonal() * poorer.information * scale.asDiagonal();
+    const MatrixXd taken = M.llt().solve(shown);
     const MatrixXd off =
         C(Eigen::all, parameters.left_out) - C(Eigen::all, parameters.fitted) * taken;
     return std::sqrt(3 * off.squaredNorm() / static_cast<double>(C.rows()));
