@@ -89,10 +89,12 @@ std::string describe_left_out(const Planning& planning) {
     if (!planning.left_out) return "";
     const ErrorsLeftOut& errors = *planning.left_out;
     return fmt::format(
-        "{} of \"{}\" are not fitted: if they are as large as expected, {} is left and not {}; "
-        "fitted as well, the same poses are expected to leave {}",
-        count_of(errors.error_count, "error"), errors.key, format_error(errors.expected, false),
-        format_error(errors.promised, false), format_error(errors.with_them, false));
+        "{} is left, not {}, if {} of \"{}\" that are not fitted are as large as usual (90 %: {} "
+        "to "
+        "{}); fitted as well, the same poses are expected to leave {}",
+        format_error(errors.expected, false), format_error(errors.promised, false),
+        count_of(errors.error_count, "error"), errors.key, format_short(mm_per_m * errors.lower, 4),
+        format_error(errors.upper, false), format_error(errors.with_them, false));
 }
 
 std::string describe_limit(const ErrorBudget& budget) {

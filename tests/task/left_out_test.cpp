@@ -62,6 +62,8 @@ TEST_F(ErrorsLeftOutOfAPlan, AreWhatSimulatedRobotsAreLeftWith) {
     EXPECT_DOUBLE_EQ(said.promised, predict_total(*planning.plan.predicted).rms);
     EXPECT_GT(said.expected, 2 * said.promised);
     EXPECT_LT(said.with_them, said.expected);
+    EXPECT_LT(said.lower, said.expected);
+    EXPECT_GT(said.upper, said.expected);
 
     RowMatrixXd poses(14, 6);
     Seen is_seen(14, 3);

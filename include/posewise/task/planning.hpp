@@ -31,13 +31,15 @@ struct PlanningOptions : PlanRequest {
     ProgressCallback progress{};
 };
 
-/// What errors do that a robot has and its model has not, if they are as large as expected. A
-/// poorer model has less to find, so it promises more. RMS over workspace and targets, m.
+/// What errors do that a robot has and its model has not. A poorer model has less to find, so it
+/// promises more than it keeps. RMS over workspace and targets, model error included, m.
 struct ErrorsLeftOut {
     std::string key;        ///< the richer model: "errors: full"
-    Index error_count = 0;  ///< errors that only the richer model has
-    double promised = 0;    ///< expected by the poorer model alone, model error included
-    double expected = 0;    ///< the same with what these errors do to its parameters and poses
+    Index error_count = 0;  ///< how many more errors that has
+    double promised = 0;    ///< expected by the poorer model alone
+    double expected = 0;    ///< by it if the robot has all errors of the richer one, as expected
+    double lower = 0;       ///< the same if they are as small as in 5 % of such robots
+    double upper = 0;       ///< or as large
     double with_them = 0;   ///< expected if the richer model is fitted to the same poses
 };
 
@@ -58,7 +60,7 @@ struct Planning {
     std::vector<DropOut> without_each;      ///< with each pose of the plan missing, in its order
     std::vector<DropOut> drop_outs;         ///< the poses that hurt most, missing one after another
     double duration = 0;                    ///< s: all moves and standstills
-    std::optional<ErrorsLeftOut> left_out;  ///< nothing: no richer model, or an estimate tells
+    std::optional<ErrorsLeftOut> left_out;  ///< nothing: none that matter, or an estimate tells
 };
 
 /// Proposes configurations to measure in the campaign's cell: draws a pool, chooses from it,

@@ -57,6 +57,8 @@ Json left_out_to_json(const ErrorsLeftOut& left_out) {
             {"error_count", left_out.error_count},
             {"promised_mm", mm_per_m * left_out.promised},
             {"expected_mm", mm_per_m * left_out.expected},
+            {"lower_mm", mm_per_m * left_out.lower},
+            {"upper_mm", mm_per_m * left_out.upper},
             {"with_them_mm", mm_per_m * left_out.with_them}};
 }
 

@@ -1,34 +1,16 @@
 #include "left_out.hpp"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 
+#include "core/elementary.hpp"
+#include "core/statistics.hpp"
 #include "measurement/noise.hpp"
+#include "planning_problem.hpp"
+#include "posewise/jacobian/identification.hpp"
 
 namespace posewise::detail {
 namespace {
-
-/// Where parameters with these names stand among all,
-/// then the places that no name has.
-struct Split {
-    std::vector<Index> fitted;
-    std::vector<Index> left_out;
-};
-
-std::optional<Split> split(const std::vector<std::string>& all,
-                           const std::vector<std::string>& fitted) {
-    Split found;
-    for (const std::string& name : fitted) {
-        const auto place = std::ranges::find(all, name);
-        if (place == all.end()) return std::nullopt;
-        found.fitted.push_back(place - all.begin());
-    }
-    for (Index k = 0; k < std::ssize(all); ++k) {
-        if (std::ranges::count(found.fitted, k) == 0) found.left_out.push_back(k);
-    }
-    return found;
-}
 
 /// The richer campaign with weights as the poorer one has them.
 Campaign weighed_as(const Campaign& poorer, Campaign richer) {
@@ -38,18 +20,25 @@ Campaign weighed_as(const Campaign& poorer, Campaign richer) {
     return richer;
 }
 
-/// RMS position error by errors left out, m; `richer` weighs as `poorer` does.
-double bias(const Planning& poorer, const Planning& richer, const Split& parameters) {
-    const MatrixXd& C = richer.errors.by_parameters.matrix;
-    const MatrixXd shown = richer.information(parameters.fitted, parameters.left_out);
-    // Each campaign scales parameters by the sizes that it expects.
-    const VectorXd scale = parameter_scale(richer.campaign)(parameters.fitted)
-                               .cwiseQuotient(parameter_scale(poorer.campaign));
-    const MatrixXd M = scale.asDiagonal() * poorer.information * scale.asDiagonal();
-    const MatrixXd taken = M.llt().solve(shown);
-    const MatrixXd off =
-        C(Eigen::all, parameters.left_out) - C(Eigen::all, parameters.fitted) * taken;
-    return std::sqrt(3 * off.squaredNorm() / static_cast<double>(C.rows()));
+/// What a plan's poses and those measured already show of a campaign's parameters, rows over their
+/// noise, and what these do to positions over the workspace, m. Columns are scaled.
+struct Columns {
+    MatrixXd shown;
+    MatrixXd moved;
+};
+
+Columns columns_of(const Campaign& campaign, const Plan& plan, const PlanningOptions& made) {
+    PlanningProblem problem = state_planning(campaign, made);
+    draw_workspace(problem, made);
+    const MatrixXd poses = blocks_of(problem, plan.poses).matrix;
+    Columns columns{poses, problem.errors.by_parameters.matrix};
+    if (!made.held) return columns;
+    const MatrixXd held = make_blocks(problem.campaign, problem.campaign.nominal,
+                                      made.held->configurations, times_seen(*made.held))
+                              .matrix;
+    columns.shown.resize(poses.rows() + held.rows(), poses.cols());
+    columns.shown << poses, held;
+    return columns;
 }
 
 }  // namespace
@@ -60,13 +49,34 @@ void judge_left_out(Planning& planning, const PlanningOptions& options) {
     const std::vector<OtherCampaign> campaigns = options.richer();
     if (campaigns.empty()) return;
     const auto& [key, richest] = campaigns.back();
-    const auto parameters = split(parameter_names(richest), parameter_names(planning.campaign));
-    if (!parameters || parameters->left_out.empty()) return;
-    const Planning weighed = judge_again(plan, weighed_as(planning.campaign, richest), options);
-    const double promised = predict_total(*plan.predicted).rms;
-    planning.left_out = {key, std::ssize(parameters->left_out), promised,
-                         std::hypot(promised, bias(planning, weighed, *parameters)),
-                         predict_total(*judge_again(plan, richest, options).plan.predicted).rms};
+    const Campaign& poorer = planning.campaign;
+    const PlanningOptions made = options_of(plan, options);
+    const auto [B0, C0] = columns_of(poorer, plan, made);
+    const auto [B, C] = columns_of(weighed_as(poorer, richest), plan, made);
+    const Index begin = base_parameter_count(richest);
+    const Index count = richest.robot.parameter_count();
+
+    const MatrixXd K = planning.information.llt().solve(C0.transpose());
+    const MatrixXd of_noise = planning.information - prior_information(poorer);
+    const MatrixXd off =
+        C.middleCols(begin, count) - K.transpose() * (B0.transpose() * B.middleCols(begin, count));
+    const double positions = static_cast<double>(C.rows()) / 3;
+    const double bias = std::sqrt(off.squaredNorm() / positions);
+    const double noise = std::sqrt(K.cwiseProduct(of_noise * K).sum() / positions);
+
+    ErrorsLeftOut left_out;
+    left_out.key = key;
+    left_out.error_count = parameter_count(richest) - parameter_count(poorer);
+    left_out.promised = predict_total(*plan.predicted).rms;
+    const auto with_sizes = [&](double factor) {
+        return std::hypot(factor * bias, noise, plan.predicted->left_over);
+    };
+    const double most = power(richest.known_within.error_size, normal_quantile(0.95));
+    left_out.expected = with_sizes(1);
+    left_out.lower = with_sizes(1 / most);
+    left_out.upper = with_sizes(most);
+    left_out.with_them = predict_total(*judge_again(plan, richest, options).plan.predicted).rms;
+    if (left_out.expected > 1.1 * left_out.promised) planning.left_out = left_out;
 }
 
 }  // namespace posewise::detail
