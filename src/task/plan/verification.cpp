@@ -19,9 +19,9 @@ namespace {
 using detail::ChoiceProblem;
 using detail::Findings;
 
-constexpr double rounding = 1e-8;  // relative, which differs between processors
+constexpr double processor_rounding = 1e-8;  // relative, which differs between processors
 
-bool agree(Criterion criterion, double a, double b, double tolerance = rounding) {
+bool agree(Criterion criterion, double a, double b, double tolerance = processor_rounding) {
     return detail::is_same_value(criterion, a, b, tolerance);
 }
 
@@ -193,11 +193,11 @@ void check_numbers(const Plan& plan, const ChoiceProblem& problem, const std::ve
                    Findings& findings) {
     const Criterion criterion = problem.options.criterion;
     const double value = detail::choice_value(problem.blocks, problem.options, poses);
-    findings.compare_value(criterion, plan.value, value, rounding);
+    findings.compare_value(criterion, plan.value, value, processor_rounding);
 
     double bound = std::max(value, prove_bound(plan, problem, findings));
-    const double of_bound =
-        std::clamp(0.1 * detail::bound_rounding(criterion, plan.certificate.M), rounding, 1e-4);
+    const double of_bound = std::clamp(0.1 * detail::bound_rounding(criterion, plan.certificate.M),
+                                       processor_rounding, 1e-4);
     const bool claims_more = plan.bound < bound && !agree(criterion, plan.bound, bound, of_bound);
     if (claims_more && has_certificate(plan, problem) && agree(criterion, plan.value, value)) {
         bound = std::max(value, prove_again(plan, problem, poses, findings));
