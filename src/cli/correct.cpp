@@ -18,6 +18,7 @@
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/io/program_targets.hpp"
 #include "posewise/report/reports.hpp"
+#include "posewise/task/cartesian_targets.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -26,6 +27,7 @@ constexpr const char* correct_footer = R"(
 Example:
   posewise correct campaign.yaml estimate.json --poses program.csv -o corrected.csv
   posewise correct campaign.yaml estimate.json --poses WELD.LS --for fanuc -o corrected/WELD.LS
+  posewise correct campaign.yaml estimate.json --poses holes.csv --cartesian --tool-mm 0,0,180 -o j.csv
 
 For a controller that knows only the nominal robot: joint values that bring the calibrated robot (the
 estimate, from calibrate --out) to where the nominal robot would be at the configurations of the
@@ -48,6 +50,12 @@ replaced in place; not another byte changes. Targets that are not joint values (
 registers) and those that a move adds to others (offsets, INC) stay as they are and are named: they still
 are the nominal robot's. Joints are written in the digits of the file.
 
+--cartesian takes places of the tool: a table of config, x_mm, y_mm, z_mm and an orientation (roll_deg,
+pitch_deg, yaw_deg about fixed axes; rx_deg, ry_deg, rz_deg; or qw, qx, qy, qz), or with --for those of a
+program, in place. The nominal robot's joint values there are searched near those of the table (columns
+q1_deg ...), --near, or home, and are corrected. ABB's quadrants and KUKA's T select among them; FANUC's
+CONFIG and KUKA's S are kept but not looked at. A target that is not reached is refused by its name.
+
 Where joints are held in most configurations and over half of their error is left, nothing is written
 and the exit code is 3; --force writes it all the same.)";
 
@@ -59,15 +67,78 @@ struct CorrectArguments {
     std::string format;  ///< program format of `poses`; empty: it is a CSV of configurations
     std::string base = "estimate";
     std::array<double, 3> tool_mm{};
+    std::array<double, 3> tool_rpy_deg{};
+    Index tool_target = 0;      ///< from 1; 0: not stated
+    bool is_cartesian = false;  ///< targets may be places of the tool
+    std::string frame = "base";
+    std::array<double, 3> frame_mm{};
+    std::array<double, 3> frame_rpy_deg{};
+    std::vector<double> near;  ///< degrees or mm; empty: the cell's home
     double mm_per_mrad = 1;
     double largest_change_deg = 5;
     double largest_change_mm = 50;
     bool is_forced = false;
 };
 
-CorrectionOptions correction_options(const CorrectArguments& arguments) {
+Isometry3d pose_of(const std::array<double, 3>& mm, const std::array<double, 3>& rpy_deg) {
+    Isometry3d pose = Isometry3d::Identity();
+    pose.translation() = Eigen::Map<const Vector3d>(mm.data()) / mm_per_m;
+    pose.linear() = rotation_from_rpy(
+        Vector3d(to_radians(rpy_deg[0]), to_radians(rpy_deg[1]), to_radians(rpy_deg[2])));
+    return pose;
+}
+
+/// As stated, or with its point where a target was found.
+Isometry3d flange_from_tool(const CorrectArguments& arguments, const Campaign& campaign,
+                            const Parameters& found) {
+    Isometry3d tool = pose_of(arguments.tool_mm, arguments.tool_rpy_deg);
+    if (arguments.tool_target == 0) return tool;
+    const Index count = campaign.sensor->observes_targets() ? campaign.sensor->target_count() : 0;
+    if (arguments.tool_target > count) {
+        throw input_error_at({arguments.estimate},
+                             fmt::format("has {}; --tool-target is {}",
+                                         detail::count_of(count, "target"), arguments.tool_target));
+    }
+    tool.translation() = campaign.sensor->target_position(arguments.tool_target - 1, found.sensor);
+    return tool;
+}
+
+/// The joint values that targets without their own are near.
+VectorXd seed_of(const CorrectArguments& arguments, const io::CampaignFile& file) {
+    if (arguments.near.empty()) return file.cell.home;
+    const Index count = file.robot.joint_count();
+    if (std::ssize(arguments.near) != count) {
+        throw CLI::ValidationError(
+            "--near", fmt::format("has {} values; must have one for each of {}",
+                                  arguments.near.size(), detail::count_of(count, "joint")));
+    }
+    io::Configurations near{{"near"}, RowMatrixXd(1, count), {}, {}};
+    for (Index j = 0; j < count; ++j) {
+        const double value = arguments.near[static_cast<std::size_t>(j)];
+        const bool turns = file.robot.joint(j).motion == Motion::Rotation;
+        near.joints(0, j) = turns ? to_radians(value) : value / mm_per_m;
+    }
+    io::check_within_limits("--near", file, near);
+    return near.joints.row(0).transpose();
+}
+
+CartesianFrames cartesian_frames(const CorrectArguments& arguments, const io::CampaignFile& file,
+                                 const Parameters& found) {
+    CartesianFrames frames;
+    frames.flange_from_tool = flange_from_tool(arguments, file, found);
+    frames.base_from_frame = pose_of(arguments.frame_mm, arguments.frame_rpy_deg);
+    if (arguments.frame == "world") {
+        const Parameters& base = arguments.base == "campaign" ? file.nominal : found;
+        frames.base_from_frame = base.world_from_base.inverse() * frames.base_from_frame;
+    }
+    if (arguments.is_cartesian) frames.seed = seed_of(arguments, file);
+    return frames;
+}
+
+CorrectionOptions correction_options(const CorrectArguments& arguments,
+                                     const CartesianFrames& frames) {
     CorrectionOptions options;
-    options.tool = Vector3d(arguments.tool_mm[0], arguments.tool_mm[1], arguments.tool_mm[2]) / 1e3;
+    options.tool = frames.flange_from_tool.translation();
     options.length_per_angle = arguments.mm_per_mrad;
     options.largest_turn = to_radians(arguments.largest_change_deg);
     options.largest_slide = arguments.largest_change_mm / 1e3;
@@ -124,10 +195,37 @@ ProgramToCorrect read_program_to_correct(const CorrectArguments& arguments,
                              "measures torques with each configuration, which no program holds");
     }
     program_steps(format, file);
-    return {format, io::read_program_targets(arguments.poses, format, file.controller)};
+    return {format,
+            io::read_program_targets(arguments.poses, format, file.controller,
+                                     arguments.is_cartesian ? io::TargetKinds::JointsAndPlaces
+                                                            : io::TargetKinds::Joints)};
 }
 
-/// The targets in the model's joints.
+/// Appends places of the tool as the nominal robot reaches them.
+void append(io::Configurations& poses, const io::CampaignFile& file,
+            const std::vector<CartesianTarget>& targets, const CartesianFrames& frames) {
+    const Index before = poses.joints.rows();
+    poses.joints.conservativeResize(before + std::ssize(targets), file.robot.joint_count());
+    poses.joints.bottomRows(std::ssize(targets)) = nominal_configurations(file, targets, frames);
+    for (const CartesianTarget& target : targets) poses.ids.push_back(target.id);
+}
+
+std::vector<CartesianTarget> targets_of(const ProgramToCorrect& read,
+                                        const io::CampaignFile& file) {
+    std::vector<CartesianTarget> targets;
+    for (const io::PlaceTarget& place : read.program.places) {
+        CartesianTarget& target = targets.emplace_back();
+        target.id = place.id;
+        target.frame_from_tool = place.frame_from_tool;
+        if (place.configuration.empty()) continue;
+        target.is_wanted = [&](const VectorXd& q) {
+            return io::is_of_configuration(place, read.format, file.controller.to_controller(q));
+        };
+    }
+    return targets;
+}
+
+/// The targets in joint values, in the model's joints.
 io::Configurations configurations_of(const io::TargetProgram& program,
                                      const io::CampaignFile& file) {
     io::Configurations poses;
@@ -140,20 +238,59 @@ io::Configurations configurations_of(const io::TargetProgram& program,
     return poses;
 }
 
+io::Configurations read_poses(const CorrectArguments& arguments, const io::CampaignFile& file,
+                              const std::optional<ProgramToCorrect>& program,
+                              const CartesianFrames& frames) {
+    if (!program && !arguments.is_cartesian) return io::read_program(arguments.poses, file);
+    io::Configurations poses;
+    std::vector<CartesianTarget> targets;
+    if (program) {
+        poses = configurations_of(program->program, file);
+        io::check_within_limits(arguments.poses, file, poses);
+        targets = targets_of(*program, file);
+    } else {
+        targets = io::read_cartesian_targets(arguments.poses, file);
+    }
+    compute_from(arguments.poses, [&] { append(poses, file, targets, frames); });
+    return poses;
+}
+
+/// What replaces the places of a program, which are corrected last.
+std::vector<io::CorrectedPlace> corrected_places(const CorrectArguments& arguments,
+                                                 const io::CampaignFile& file,
+                                                 const ProgramToCorrect& read,
+                                                 const CorrectedPoses& corrected,
+                                                 const CartesianFrames& frames) {
+    if (read.program.places.empty()) return {};
+    const std::vector<Isometry3d> targets =
+        compute_from(arguments.poses, [&] { return corrected_targets(corrected, frames); });
+    std::vector<io::CorrectedPlace> places;
+    for (std::size_t k = read.program.targets.size(); k < targets.size(); ++k) {
+        const VectorXd nominal = corrected.nominal.row(static_cast<Index>(k)).transpose();
+        places.push_back({targets[k], file.controller.to_controller(nominal),
+                          file.controller.to_controller(corrected.corrections[k].joints)});
+    }
+    return places;
+}
+
 void write_corrected(const CorrectArguments& arguments, const io::CampaignFile& file,
                      const io::Configurations& poses, const CorrectedPoses& corrected,
-                     const std::optional<ProgramToCorrect>& program) {
+                     const std::optional<ProgramToCorrect>& program,
+                     const CartesianFrames& frames) {
     if (arguments.out.empty()) return;
     if (!program) {
         return io::write_corrections_csv(arguments.out, file, poses.ids, corrected.corrections,
                                          poses.purposes);
     }
     std::vector<VectorXd> values;
-    for (const Correction& correction : corrected.corrections) {
-        values.push_back(file.controller.to_controller(correction.joints));
+    for (std::size_t k = 0; k < program->program.targets.size(); ++k) {
+        values.push_back(file.controller.to_controller(corrected.corrections[k].joints));
     }
-    io::write_program_targets(arguments.out, program->program, program->format, file.controller,
-                              values);
+    const auto places = corrected_places(arguments, file, *program, corrected, frames);
+    compute_from(arguments.poses, [&] {
+        io::write_program_targets(arguments.out, program->program, program->format, file.controller,
+                                  values, places);
+    });
 }
 
 void correct(const CorrectArguments& arguments, const CommonOptions& common) {
@@ -163,18 +300,18 @@ void correct(const CorrectArguments& arguments, const CommonOptions& common) {
         read_usable_estimate(arguments.estimate, file, arguments.is_forced).parameters;
     std::optional<ProgramToCorrect> program;
     if (!arguments.format.empty()) program = read_program_to_correct(arguments, file);
-    const io::Configurations poses = program ? configurations_of(program->program, file)
-                                             : io::read_program(arguments.poses, file);
-    io::check_within_limits(arguments.poses, file, poses);
     const auto base =
         arguments.base == "campaign" ? CorrectionBase::Campaign : CorrectionBase::Estimate;
     if (base == CorrectionBase::Campaign && !file.has_nominal_base) {
         throw input_error_at({arguments.paths.campaign},
                              "does not state a base; --base campaign needs it");
     }
+    const CartesianFrames frames = cartesian_frames(arguments, file, found);
+    const io::Configurations poses = read_poses(arguments, file, program, frames);
+    io::check_within_limits(arguments.poses, file, poses);
     const CorrectedPoses corrected = compute_from(arguments.poses, [&] {
         return correct_poses(file, found, poses.joints, poses.ids, base,
-                             correction_options(arguments));
+                             correction_options(arguments, frames));
     });
     check_corrected(arguments, corrected);
     if (!corrected.collisions.empty()) {
@@ -184,12 +321,49 @@ void correct(const CorrectArguments& arguments, const CommonOptions& common) {
         warn_of_others(arguments, program->program);
         warn_of_name(arguments, program->format);
     }
-    write_corrected(arguments, file, poses, corrected, program);
+    write_corrected(arguments, file, poses, corrected, program, frames);
     if (common.json) return print_document(io::to_json(corrected, file));
-    print(fmt::format("{}: {} corrected{}\n", file.name,
-                      detail::count_of(std::ssize(poses.ids), program ? "target" : "configuration"),
-                      arguments.out.empty() ? "" : ": " + detail::escape_controls(arguments.out)));
+    print(fmt::format(
+        "{}: {} corrected{}\n", file.name,
+        detail::count_of(std::ssize(poses.ids),
+                         program || arguments.is_cartesian ? "target" : "configuration"),
+        arguments.out.empty() ? "" : ": " + detail::escape_controls(arguments.out)));
     print(format(corrected));
+}
+
+void add_cartesian_options(CLI::App& command, CorrectArguments& arguments) {
+    CLI::Option* const cartesian = command.add_flag(
+        "--cartesian", arguments.is_cartesian,
+        "Targets are, or with --for may be, places of the tool: x, y, z and an orientation");
+    const auto add_triple = [&](const char* name, std::array<double, 3>& triple, double most,
+                                const char* description) {
+        command.add_option(name, triple, description)
+            ->delimiter(',')
+            ->check(real_number(-most, most))
+            ->needs(cartesian);
+    };
+    constexpr double farthest = 1e6;  // mm
+    constexpr double whole_turn = 360;
+    add_triple("--tool-rpy-deg", arguments.tool_rpy_deg, whole_turn,
+               "Orientation of the tool in the flange frame: R,P,Y (default: as the flange)");
+    command
+        .add_option("--frame", arguments.frame,
+                    "What Cartesian targets, or --frame-mm and --frame-rpy-deg, refer to: base or "
+                    "world (the instrument)")
+        ->check(CLI::IsMember({"base", "world"}))
+        ->capture_default_str()
+        ->needs(cartesian);
+    add_triple("--frame-mm", arguments.frame_mm, farthest,
+               "Origin of the frame of Cartesian targets: X,Y,Z");
+    add_triple("--frame-rpy-deg", arguments.frame_rpy_deg, whole_turn,
+               "Its orientation: R,P,Y, about fixed x, y, z");
+    command
+        .add_option("--near", arguments.near,
+                    "Joint values near which Cartesian targets are meant, deg or mm (default: the "
+                    "cell's home)")
+        ->delimiter(',')
+        ->check(real_number(-1e6, 1e6))
+        ->needs(cartesian);
 }
 
 void add_correct_options(CLI::App& command, CorrectArguments& arguments) {
@@ -216,6 +390,13 @@ void add_correct_options(CLI::App& command, CorrectArguments& arguments) {
                     "Point whose position counts, in the flange frame: X,Y,Z (default: the flange)")
         ->delimiter(',')
         ->check(real_number(-1e4, 1e4));
+    command
+        .add_option("--tool-target", arguments.tool_target,
+                    "Take the place that the estimate found for the target of this number as the "
+                    "tool's point")
+        ->check(whole_number(1, 1000))
+        ->excludes("--tool-mm");
+    add_cartesian_options(command, arguments);
     command
         .add_option("--mm-per-mrad", arguments.mm_per_mrad,
                     "What 1 mrad counts as where not all of the pose can be had; 0: nothing")

@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <numbers>
 #include <vector>
 
 #include "program.hpp"
@@ -13,6 +17,48 @@ class Correct : public Program {
         run_well("simulate " + fanuc_design + " --poses 40 --truth 5 -o m.csv");
         run_well("calibrate " + fanuc_design + " -m m.csv --folds 0 -o e.json");
     }
+    /// A row of Cartesian targets: the tool's point on the design's flange at these joints (deg).
+    static std::string place_row(const std::string& id, const std::vector<double>& q_deg,
+                                 const Eigen::Vector3d& tool_mm) {
+        using Eigen::AngleAxisd;
+        using Eigen::Translation3d;
+        using Eigen::Vector3d;
+        const auto turn = [&](std::size_t joint, const Vector3d& axis) {
+            return AngleAxisd(q_deg[joint] * std::numbers::pi / 180, axis);
+        };
+        const Eigen::Isometry3d flange =
+            Eigen::Isometry3d::Identity() * turn(0, Vector3d::UnitZ()) * Translation3d(312, 0, 0) *
+            turn(1, Vector3d::UnitY()) * Translation3d(0, 0, 1075) * turn(2, -Vector3d::UnitY()) *
+            Translation3d(1280, 0, 225) * turn(3, -Vector3d::UnitX()) *
+            turn(4, -Vector3d::UnitY()) * turn(5, -Vector3d::UnitX());
+        const Vector3d point = flange * tool_mm;
+        const Eigen::Quaterniond q(flange.linear());
+        std::string row = fmt::format("{},{:.9f},{:.9f},{:.9f},{:.12f},{:.12f},{:.12f},{:.12f}", id,
+                                      point.x(), point.y(), point.z(), q.w(), q.x(), q.y(), q.z());
+        // Joints near those: not exactly there.
+        for (const double value : q_deg) row += fmt::format(",{}", value + 3);
+        return row + '\n';
+    }
+
+    /// All numbers of two tables, whose notes and ids are the same.
+    void expect_same_numbers(const std::string& a, const std::string& b, double tolerance) const {
+        std::istringstream first(text_of(a));
+        std::istringstream second(text_of(b));
+        std::string x;
+        std::string y;
+        while (std::getline(first, x, ',')) {
+            ASSERT_TRUE(std::getline(second, y, ','));
+            char* end = nullptr;
+            const double value = std::strtod(x.c_str(), &end);
+            if (end == x.c_str()) {
+                EXPECT_EQ(x, y);
+            } else {
+                EXPECT_NEAR(value, std::strtod(y.c_str(), nullptr), tolerance);
+            }
+        }
+        EXPECT_FALSE(std::getline(second, y, ','));
+    }
+
     const std::string correct_ = "correct " + fanuc_design + " e.json --poses ";
 };
 
@@ -116,6 +162,57 @@ TEST_F(Correct, ReplacesTheJointTargetsOfAProgram) {
     write_text("far.script", "movej([0, 3, 0, 0, 0, 0])\n");
     expect_input_error(correct_ + "far.script --for ur -o c.script",
                        "far.script: configuration '1:8' is beyond the joint limits: q2 is ");
+}
+
+TEST_F(Correct, TakesPlacesOfATool) {
+    write_text("p.csv",
+               "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n"
+               "a,10,20,-30,40,50,60\n\"b,c\",-60,-20,0,-40,-70,0\n");
+    const std::string tool = " --tool-mm 100,20,50";
+    const std::string joints = run_well(correct_ + "p.csv -o joints.csv" + tool);
+    // Where the nominal robot's flange is there, from the definition of the design.
+    write_text("t.csv",
+               "config,x_mm,y_mm,z_mm,qw,qx,qy,qz,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n" +
+                   place_row("a", {10, 20, -30, 40, 50, 60}, {100, 20, 50}) +
+                   place_row("\"b,c\"", {-60, -20, 0, -40, -70, 0}, {100, 20, 50}));
+    const std::string text = run_well(correct_ + "t.csv --cartesian -o places.csv" + tool);
+    EXPECT_NE(text.find("2 targets corrected: places.csv"), std::string::npos) << text;
+    expect_same_numbers("joints.csv", "places.csv", 1e-4);
+    EXPECT_LT(number_behind(text, "position RMS/mm", 1), 1e-3);
+    // In the instrument's frame: another base than the stated one was found.
+    const std::string world = run_well(correct_ + "t.csv --cartesian --base campaign" + tool);
+    EXPECT_NE(number_behind(world, "position RMS/mm"), number_behind(text, "position RMS/mm"));
+    EXPECT_NE(run_well(correct_ + "t.csv --cartesian --tool-target 1 --frame-mm 0,0,30"), text);
+    expect_input_error(correct_ + "t.csv --cartesian --frame-mm 5000,0,0 -o c.csv",
+                       "t.csv: target 'a' is not reached by the nominal robot within its joint "
+                       "limits; are frame and tool right?");
+    expect_input_error(correct_ + "p.csv --cartesian -o c.csv", "missing column x");
+    expect_input_error(correct_ + "t.csv --cartesian --tool-target 9 -o c.csv",
+                       "--tool-target is 9");
+    write_text("bare.csv", "config,x_mm,y_mm,z_mm,rx_deg,ry_deg,rz_deg\na,1500,0,900,0,0,0\n");
+    expect_input_error(correct_ + "bare.csv --cartesian -o c.csv",
+                       "target 'a' has no joint values to begin at");
+    run_well(correct_ + "bare.csv --cartesian --near 0,0,0,0,-5,0 -o c.csv");
+    EXPECT_EQ(run(correct_ + "bare.csv --cartesian --near 0,0 -o c.csv").code, 2);
+    EXPECT_EQ(run(correct_ + "p.csv --near 0,0,0,0,0,0").code, 2);
+}
+
+TEST_F(Correct, ReplacesThePlacesOfAProgram) {
+    const std::string program =
+        "def weld():\n  movej([0.1, 0.2, -0.3, 0.4, 0.5, 0.6], a=1.4)\n"
+        "  movel(p[1.5, 0.2, 0.9, 0, 0.3, 0], a=1) # p[1, 2]\n  q = pose_trans(p[0, 0, 0, 0, 0, "
+        "0], q)\nend\n";
+    write_text("weld.script", program);
+    const Outcome outcome = run(correct_ +
+                                "weld.script --for ur --cartesian --near 0,0,0,0,-20,0 "
+                                "-o corrected.script");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("2 targets corrected"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.err.find("weld.script:4: is not corrected"), std::string::npos);
+    const std::string corrected = text_of("corrected.script");
+    EXPECT_EQ(corrected.find("movel(p[1.5, "), std::string::npos) << corrected;
+    EXPECT_NE(corrected.find("  q = pose_trans(p[0, 0, 0, 0, 0, 0], q)\n"), std::string::npos);
+    EXPECT_NE(corrected.find("# p[1, 2]"), std::string::npos) << corrected;
 }
 
 TEST_F(Correct, RefusesWhatItCannotUse) {

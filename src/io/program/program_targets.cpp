@@ -3,121 +3,35 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <functional>
+#include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 
 #include "core/text.hpp"
 #include "io/format/text.hpp"
-#include "program_text.hpp"
+#include "target_text.hpp"
 
 namespace posewise::io {
 namespace {
 
+using detail::Cursor;
 using detail::lower_case;
+using detail::masked;
 using detail::ProgramRules;
-
-const ProgramRules* rules_of(ProgramFormat format) {
-    switch (format) {
-        case ProgramFormat::Fanuc:
-            return &detail::fanuc_program().rules;
-        case ProgramFormat::Kuka:
-            return &detail::kuka_program().rules;
-        case ProgramFormat::Abb:
-            return &detail::abb_program().rules;
-        case ProgramFormat::Ur:
-            return &detail::ur_program().rules;
-        default:
-            return nullptr;
-    }
-}
-
-bool is_name_letter(char letter) {
-    return letter == '_' || letter == '$' || std::isalnum(static_cast<unsigned char>(letter)) != 0;
-}
-
-/// The program with blanks in the place of comments and strings.
-std::string masked(const std::string& content, char comment) {
-    std::string text = content;
-    char within = 0;
-    for (char& letter : text) {
-        if (letter == '\n') {
-            within = 0;
-        } else if (within == 0) {
-            if (letter == comment || letter == '"') within = letter;
-            if (within != 0) letter = ' ';
-        } else {
-            if (letter == within && within == '"') within = 0;
-            letter = ' ';
-        }
-    }
-    return text;
-}
-
-/// Reads on from a place in a text.
-class Cursor {
-  public:
-    Cursor(std::string_view text, std::size_t at) : text_(text), at_(at) {}
-
-    std::size_t at() const { return at_; }
-    bool is_at_end() const { return at_ >= text_.size(); }
-
-    void skip_blanks() {
-        while (!is_at_end() && std::isspace(static_cast<unsigned char>(text_[at_])) != 0) ++at_;
-    }
-    bool take(char letter) {
-        skip_blanks();
-        if (is_at_end() || text_[at_] != letter) return false;
-        ++at_;
-        return true;
-    }
-    std::string_view word() {
-        skip_blanks();
-        const std::size_t begin = at_;
-        while (!is_at_end() && is_name_letter(text_[at_])) ++at_;
-        return text_.substr(begin, at_ - begin);
-    }
-    std::optional<TextSpan> number() {
-        skip_blanks();
-        const std::size_t end =
-            std::min(text_.find_first_not_of("+-.0123456789eE", at_), text_.size());
-        const TextSpan span{at_, end};
-        if (!detail::parse_number(text_.substr(at_, end - at_)).ok()) return std::nullopt;
-        at_ = end;
-        return span;
-    }
-    /// As many numbers, by commas, and the letter after them.
-    std::optional<std::vector<TextSpan>> numbers(std::size_t count, char close) {
-        std::vector<TextSpan> spans;
-        while (spans.size() < count) {
-            if (!spans.empty() && !take(',')) return std::nullopt;
-            const auto span = number();
-            if (!span) return std::nullopt;
-            spans.push_back(*span);
-        }
-        if (!take(close)) return std::nullopt;
-        return spans;
-    }
-
-  private:
-    std::string_view text_;
-    std::size_t at_;
-};
-
-/// The word that ends just before a place, blanks between them passed over.
-std::string_view word_before(std::string_view text, std::size_t at) {
-    while (at > 0 && (text[at - 1] == ' ' || text[at - 1] == '\t')) --at;
-    std::size_t begin = at;
-    while (begin > 0 && is_name_letter(text[begin - 1])) --begin;
-    return text.substr(begin, at - begin);
-}
+using detail::word_before;
 
 class TargetReader {
   public:
-    TargetReader(const std::string& path, const ProgramRules& rules, const ControllerJoints& joints)
-        : path_(path), rules_(rules), joints_(joints) {
+    TargetReader(const std::string& path, ProgramFormat format, const ControllerJoints& joints,
+                 TargetKinds kinds)
+        : path_(path),
+          format_(format),
+          rules_(*detail::target_rules_of(format)),
+          joints_(joints),
+          kinds_(kinds) {
         constexpr std::size_t most_bytes = 1 << 26;
         program_.content = detail::read_file(path, most_bytes);
         for (std::size_t k = 0; k < program_.content.size(); ++k) {
@@ -130,9 +44,21 @@ class TargetReader {
     void read_abb();
     void read_ur();
 
+    /// What tells which tools and frames its targets are of: without comments and strings.
+    std::string code() const {
+        if (format_ == ProgramFormat::Fanuc) return fanuc_frames_;
+        constexpr char abb_comment = '!';
+        const char comment = format_ == ProgramFormat::Kuka  ? ';'
+                             : format_ == ProgramFormat::Abb ? abb_comment
+                                                             : '#';
+        return masked(content(), comment);
+    }
+
     TargetProgram finish() {
-        if (program_.targets.empty()) {
-            throw input_error_at({path_}, "has no target in joint values; must have one");
+        if (program_.targets.empty() && program_.places.empty()) {
+            throw input_error_at({path_}, takes_places()
+                                              ? "has no target; must have one"
+                                              : "has no target in joint values; must have one");
         }
         std::ranges::sort(program_.others);
         const auto repeated = std::ranges::unique(program_.others);
@@ -172,17 +98,58 @@ class TargetReader {
         program_.targets.push_back(std::move(target));
     }
 
+    bool takes_places() const { return kinds_ == TargetKinds::JointsAndPlaces; }
+
+    void add_place(const std::vector<TextSpan>& values,
+                   const std::vector<TextSpan>& configuration = {}, const std::string& id = "") {
+        const FileLocation where = place(values.front().begin);
+        PlaceTarget target;
+        target.id = id.empty() ? fmt::format("{}:{}", where.line, where.column) : id;
+        target.values = values;
+        target.configuration = configuration;
+        std::vector<double> numbers;
+        for (const TextSpan& span : values) numbers.push_back(detail::number_at(content(), span));
+        for (const TextSpan& span : configuration) {
+            constexpr double most = 1 << 20;
+            const double state = detail::number_at(content(), span);
+            if (state != std::floor(state) || std::abs(state) > most) {
+                throw input_error_at(place(span.begin), "is no number of a configuration");
+            }
+            target.states.push_back(std::lround(state));
+        }
+        try {
+            target.frame_from_tool = detail::place_of(format_, numbers);
+        } catch (const InputError& error) {
+            throw input_error_at(where, error.what());
+        }
+        program_.places.push_back(std::move(target));
+    }
+
+    /// Whether all of these are numbers that no axis is moved by.
+    bool are_at_rest(const std::vector<TextSpan>& axes) const {
+        return std::ranges::all_of(axes, [&](const TextSpan& span) {
+            const double value = detail::number_at(content(), span);
+            return value == 0 || value == 9e9;
+        });
+    }
+
     std::set<std::string> fanuc_added_positions() const;
+    bool read_fanuc_place(std::size_t begin, std::string_view text, const std::string& number);
+    void read_kuka_aggregate(const std::string& text, std::size_t at);
+    bool read_abb_robtarget(const std::string& text, std::size_t at);
     void read_fanuc_position(std::size_t begin, std::size_t end,
                              const std::set<std::string>& added);
 
     std::size_t count() const { return static_cast<std::size_t>(joints_.count()); }
 
     const std::string& path_;
+    ProgramFormat format_;
     const ProgramRules& rules_;
     const ControllerJoints& joints_;
+    TargetKinds kinds_;
     std::vector<std::size_t> line_begins_{0};
     TargetProgram program_;
+    std::string fanuc_frames_;  ///< "UF : 0, UT : 1" of each place
 };
 
 // ---- FANUC ----
@@ -249,7 +216,10 @@ void TargetReader::read_fanuc_position(std::size_t begin, std::size_t end,
         }
         spans.push_back(*span);
     }
-    if (spans.empty()) return leave(begin);
+    if (spans.empty()) {
+        if (!read_fanuc_place(begin, text, number)) leave(begin);
+        return;
+    }
     if (spans.size() != count()) {
         throw input_error_at(place(begin),
                              fmt::format("states {} joints; must state {}", spans.size(), count()));
@@ -257,64 +227,143 @@ void TargetReader::read_fanuc_position(std::size_t begin, std::size_t end,
     add(spans, fmt::format("P[{}]", number));
 }
 
+/// X to R of a position with CONFIG, of the first group, which ends with `text`.
+bool TargetReader::read_fanuc_place(std::size_t begin, std::string_view text,
+                                    const std::string& number) {
+    if (!takes_places()) return false;
+    constexpr std::string_view names = "XYZWPR";
+    std::vector<TextSpan> values;
+    for (std::size_t at = text.find('=', begin); at != std::string_view::npos;
+         at = text.find('=', at + 1)) {
+        const std::string_view name = word_before(text, at);
+        Cursor cursor(text, at + 1);
+        const auto span = cursor.number();
+        if (name.starts_with('E') && !(span && are_at_rest({*span}))) return false;
+        if (name.starts_with('E')) continue;
+        if (values.size() >= names.size() || name != names.substr(values.size(), 1)) return false;
+        if (!span || cursor.word() != (values.size() < 3 ? "mm" : "deg")) {
+            throw input_error_at(place(at),
+                                 std::string(name) + " is no number of mm or degrees; must be");
+        }
+        values.push_back(*span);
+    }
+    if (values.size() != names.size()) return false;
+    add_place(values, {}, fmt::format("P[{}]", number));
+    const std::size_t frames = text.find("UF", begin);
+    const std::size_t line = std::min(text.find('\n', frames), text.size());
+    if (frames < line) fanuc_frames_ += std::string(text.substr(frames, line - frames)) + '\n';
+    return true;
+}
+
 // ---- KUKA ----
+
+/// The numbers of an aggregate, "{E6POS: X 1.0,...}".
+struct KukaAggregate {
+    std::vector<TextSpan> axes;             ///< A1, A2, ... in this order
+    std::map<std::string, TextSpan> named;  ///< all, by lower case
+    bool is_whole = true;                   ///< all of it are numbers
+};
+
+KukaAggregate read_kuka_numbers(const std::string& text, std::size_t at) {
+    const std::size_t end = std::min(text.find('}', at), text.size());
+    const std::size_t colon = text.find(':', at);
+    Cursor cursor(text, colon < end ? colon + 1 : at + 1);
+    KukaAggregate aggregate;
+    while (cursor.at() < end) {
+        const std::string name = lower_case(std::string(cursor.word()));
+        const auto span = cursor.number();
+        aggregate.is_whole = span.has_value();
+        if (!span) break;
+        aggregate.named.emplace(name, *span);
+        if (name == fmt::format("a{}", aggregate.axes.size() + 1)) aggregate.axes.push_back(*span);
+        if (!cursor.take(',')) break;
+    }
+    return aggregate;
+}
+
+void TargetReader::read_kuka_aggregate(const std::string& text, std::size_t at) {
+    const std::string before = lower_case(std::string(line_before(at, text)));
+    const std::string_view word = Cursor(before, 0).word();
+    const bool is_relative = word.ends_with("_rel");
+    const bool is_move = word == "ptp" || word == "sptp";
+    const bool is_path = word == "lin" || word == "circ" || word == "slin" || word == "scirc" ||
+                         word == "spl" || is_relative;
+    const KukaAggregate aggregate = read_kuka_numbers(text, at);
+    const auto has_axis = [](const auto& one) {
+        return one.first.size() == 2 && one.first[0] == 'a';
+    };
+    const bool is_axis_value = before.ends_with('=') && before.find("axis") != std::string::npos;
+    const bool is_place = before.ends_with('=') && before.find("pos") != std::string::npos;
+    if (!is_relative && aggregate.axes.size() == count() && (is_move || is_axis_value)) {
+        return add(aggregate.axes);
+    }
+    const bool is_cartesian = aggregate.named.contains("x") && (is_move || is_path || is_place);
+    if (!is_cartesian || is_relative || !takes_places() || !aggregate.is_whole) {
+        if (is_cartesian || is_relative || std::ranges::any_of(aggregate.named, has_axis))
+            leave(at);
+        return;
+    }
+    std::vector<TextSpan> values;
+    std::vector<TextSpan> external;
+    for (const char* const name : {"x", "y", "z", "a", "b", "c"}) {
+        const auto found = aggregate.named.find(name);
+        if (found == aggregate.named.end()) return leave(at);
+        values.push_back(found->second);
+    }
+    for (const auto& [name, span] : aggregate.named) {
+        if (name.starts_with('e')) external.push_back(span);
+    }
+    if (!are_at_rest(external)) return leave(at);
+    const auto turns = aggregate.named.find("t");
+    add_place(values, turns == aggregate.named.end() ? std::vector<TextSpan>{}
+                                                     : std::vector<TextSpan>{turns->second});
+}
 
 void TargetReader::read_kuka() {
     const std::string text = masked(content(), ';');
     for (std::size_t at = text.find('{'); at != std::string::npos; at = text.find('{', at + 1)) {
-        const std::string before = lower_case(std::string(line_before(at, text)));
-        Cursor first(before, 0);
-        const std::string_view word = first.word();
-        const bool is_relative = word.ends_with("_rel");
-        const bool is_move = word == "ptp" || word == "sptp";
-        const bool is_path = word == "lin" || word == "circ" || word == "slin" || word == "scirc" ||
-                             word == "spl" || is_relative;
-        Cursor cursor(text, at + 1);
-        std::vector<TextSpan> spans;
-        bool is_cartesian = false;
-        bool has_axes = false;
-        const std::size_t end = std::min(text.find('}', at), text.size());
-        const std::size_t colon = text.find(':', at);
-        if (colon < end) cursor = Cursor(text, colon + 1);  // {E6AXIS: A1 ...}
-        while (cursor.at() < end) {
-            const std::string name = lower_case(std::string(cursor.word()));
-            const auto span = cursor.number();
-            if (!span) break;
-            if (name == fmt::format("a{}", spans.size() + 1)) spans.push_back(*span);
-            is_cartesian = is_cartesian || name == "x";
-            has_axes = has_axes || (name.size() == 2 && name[0] == 'a');
-            if (!cursor.take(',')) break;
-        }
-        const bool is_stated = before.ends_with('=') && before.find("axis") != std::string::npos;
-        const bool is_place = before.ends_with('=') && before.find("pos") != std::string::npos;
-        if (!is_relative && spans.size() == count() && (is_move || is_stated)) {
-            add(spans);
-        } else if (has_axes || is_relative || (is_cartesian && (is_move || is_path || is_place))) {
-            leave(at);
-        }
+        read_kuka_aggregate(text, at);
     }
 }
 
 // ---- ABB ----
+
+/// A robtarget: position, orientation, configuration, external axes. Whether it is one.
+bool TargetReader::read_abb_robtarget(const std::string& text, std::size_t at) {
+    constexpr std::size_t three = 3;
+    constexpr std::size_t four = 4;
+    Cursor cursor(text, at);
+    const auto position = cursor.numbers(three, ']');
+    if (!position || !cursor.take(',') || !cursor.take('[')) return false;
+    const auto orientation = cursor.numbers(four, ']');
+    if (!orientation || !cursor.take(',') || !cursor.take('[')) return false;
+    const auto configuration = cursor.numbers(four, ']');
+    if (!configuration) return false;
+    constexpr std::size_t six = 6;
+    const auto external =
+        cursor.take(',') && cursor.take('[') ? cursor.numbers(six, ']') : std::nullopt;
+    if (!takes_places() || !external || !are_at_rest(*external)) {
+        leave(at);
+        return true;
+    }
+    std::vector<TextSpan> values = *position;
+    values.insert(values.end(), orientation->begin(), orientation->end());
+    add_place(values, {(*configuration)[0], (*configuration)[1], (*configuration)[2]});
+    return true;
+}
 
 void TargetReader::read_abb() {
     const std::string text = masked(content(), '!');
     for (std::size_t at = text.find('['); at != std::string::npos; at = text.find('[', at + 1)) {
         Cursor joints(text, at + 1);
         if (!joints.take('[')) continue;
-        Cursor place = joints;
+        const std::size_t inner = joints.at();
         const auto spans = joints.numbers(count(), ']');
         if (spans && joints.take(',') && joints.take('[')) {
             add(*spans);
-            continue;
+        } else {
+            read_abb_robtarget(text, inner);
         }
-        // A robtarget: position, orientation, configuration.
-        constexpr std::size_t three = 3;
-        constexpr std::size_t four = 4;
-        const bool is_robtarget = place.numbers(three, ']') && place.take(',') && place.take('[') &&
-                                  place.numbers(four, ']') && place.take(',') && place.take('[') &&
-                                  place.numbers(four, ']');
-        if (is_robtarget) leave(at);
     }
 }
 
@@ -332,41 +381,33 @@ void TargetReader::read_ur() {
     }
     names.erase("p");
     for (std::size_t at = text.find('['); at != std::string::npos; at = text.find('[', at + 1)) {
-        if (word_before(text, at) == "p") {
-            leave(at);
-            continue;
-        }
-        std::size_t before = at;
+        const bool is_pose = word_before(text, at) == "p";
+        std::size_t before = is_pose ? text.rfind('p', at) : at;
         while (before > 0 && (text[before - 1] == ' ' || text[before - 1] == '\t')) --before;
-        if (before == 0) continue;
-        const char letter = text[before - 1];
-        const std::string_view word = word_before(text, before - 1);
+        const char letter = before == 0 ? '\0' : text[before - 1];
+        const std::string_view word = before == 0 ? "" : word_before(text, before - 1);
         const bool is_target = (letter == '(' && is_move(word)) ||
                                (letter == '=' && names.contains(std::string(word)));
-        if (!is_target) continue;
-        if (const auto spans = Cursor(text, at + 1).numbers(count(), ']')) {
-            add(*spans);
-        } else {
+        if (!is_target || (is_pose && !takes_places())) {
+            if (is_pose) leave(at);
+            continue;
+        }
+        constexpr std::size_t pose_numbers = 6;
+        const auto spans = Cursor(text, at + 1).numbers(is_pose ? pose_numbers : count(), ']');
+        if (!spans) {
             leave(at);
+        } else if (is_pose) {
+            add_place(*spans);
+        } else {
+            add(*spans);
         }
     }
 }
 
-/// With at least as many decimals as both the file and the format have; the text itself where it is
-/// the same number then.
+/// The joint value in the file's unit.
 std::string value_text(std::string_view text, const ProgramRules& rules, Motion motion, double si) {
-    const std::size_t point = text.find('.');
-    const bool is_plain = text.find_first_of("eE") == std::string_view::npos;
-    ProgramRules digits = rules;
-    if (point != std::string_view::npos && is_plain) {
-        constexpr std::size_t most = 12;  // a double holds no more of a turn
-        const std::size_t decimals = std::min(most, text.size() - point - 1);
-        digits.decimals = std::max(rules.decimals, static_cast<int>(decimals));
-    }
-    const std::string replaced = detail::joint_text(digits, motion, si);
-    const double change = detail::parse_number(replaced).value - detail::parse_number(text).value;
-    const bool is_same = std::abs(change) < 0.501 * std::pow(10.0, -digits.decimals);
-    return is_same ? std::string(text) : replaced;
+    const detail::Unit& unit = detail::unit_of(rules, motion);
+    return detail::number_text(text, rules.decimals, si * unit.divisor / unit.factor);
 }
 
 }  // namespace
@@ -374,52 +415,61 @@ std::string value_text(std::string_view text, const ProgramRules& rules, Motion 
 std::vector<std::string> target_format_names() { return {"fanuc", "kuka", "abb", "ur"}; }
 
 TargetProgram read_program_targets(const std::string& path, ProgramFormat format,
-                                   const ControllerJoints& joints) {
-    const ProgramRules* const rules = rules_of(format);
-    if (rules == nullptr) {
+                                   const ControllerJoints& joints, TargetKinds kinds) {
+    if (detail::target_rules_of(format) == nullptr) {
         throw InputError(fmt::format("programs for {} are not corrected; must be {}",
                                      program_format_name(format),
                                      detail::list_words(target_format_names())));
     }
     joint_steps(format, joints);
-    TargetReader reader(path, *rules, joints);
+    TargetReader reader(path, format, joints, kinds);
     if (format == ProgramFormat::Fanuc) reader.read_fanuc();
     if (format == ProgramFormat::Kuka) reader.read_kuka();
     if (format == ProgramFormat::Abb) reader.read_abb();
     if (format == ProgramFormat::Ur) reader.read_ur();
-    return reader.finish();
+    TargetProgram program = reader.finish();
+    if (!program.places.empty()) detail::check_one_frame(path, reader.code(), format);
+    return program;
 }
 
 std::string replace_targets(const TargetProgram& program, ProgramFormat format,
-                            const ControllerJoints& joints, const std::vector<VectorXd>& values) {
-    const std::string& content = program.content;
+                            const ControllerJoints& joints, const std::vector<VectorXd>& values,
+                            const std::vector<CorrectedPlace>& places) {
+    const std::string_view content = program.content;
+    const ProgramRules& rules = *detail::target_rules_of(format);
+    std::vector<std::pair<TextSpan, std::string>> texts;
+    for (std::size_t k = 0; k < program.targets.size(); ++k) {
+        for (Index i = 0; i < joints.count(); ++i) {
+            const TextSpan span = program.targets[k].values[static_cast<std::size_t>(i)];
+            const std::string_view old = content.substr(span.begin, span.end - span.begin);
+            texts.emplace_back(span, value_text(old, rules, joints.motion(i), values[k][i]));
+        }
+    }
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        std::ranges::move(detail::place_texts(program, k, format, places[k]),
+                          std::back_inserter(texts));
+    }
+    std::ranges::stable_sort(texts, {}, [](const auto& one) { return one.first.begin; });
     std::string text;
     std::size_t done = 0;
-    for (std::size_t k = 0; k < program.targets.size(); ++k) {
-        const JointTarget& target = program.targets[k];
-        for (Index i = 0; i < joints.count(); ++i) {
-            const auto [begin, end] = target.values[static_cast<std::size_t>(i)];
-            const std::string_view old = std::string_view(content).substr(begin, end - begin);
-            const std::string value =
-                value_text(old, *rules_of(format), joints.motion(i), values[k][i]);
-            text.append(content, done, begin - done);
-            // Columns stay where blanks in front of a value leave room for it, one blank at least.
-            std::size_t longer = value.size() > old.size() ? value.size() - old.size() : 0;
-            for (; longer > 0 && text.ends_with("  "); --longer) text.pop_back();
-            if (value.size() < old.size() && text.ends_with("  ")) {
-                text.append(old.size() - value.size(), ' ');
-            }
-            text += value;
-            done = end;
-        }
+    for (const auto& [span, value] : texts) {
+        text.append(content, done, span.begin - done);
+        // Columns stay where blanks in front of a value leave room for it, one blank at least.
+        const std::size_t before = span.end - span.begin;
+        std::size_t longer = value.size() > before ? value.size() - before : 0;
+        for (; longer > 0 && text.ends_with("  "); --longer) text.pop_back();
+        if (value.size() < before && text.ends_with("  ")) text.append(before - value.size(), ' ');
+        text += value;
+        done = span.end;
     }
     return text.append(content, done);
 }
 
 void write_program_targets(const std::string& path, const TargetProgram& program,
                            ProgramFormat format, const ControllerJoints& joints,
-                           const std::vector<VectorXd>& values) {
-    detail::write_file(path, replace_targets(program, format, joints, values));
+                           const std::vector<VectorXd>& values,
+                           const std::vector<CorrectedPlace>& places) {
+    detail::write_file(path, replace_targets(program, format, joints, values, places));
 }
 
 }  // namespace posewise::io
