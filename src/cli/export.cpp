@@ -10,6 +10,7 @@
 #include "files.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/io/correction_map_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/model/error_terms.hpp"
 
@@ -21,6 +22,7 @@ Example:
   posewise export campaign.yaml estimate.json --urdf calibrated.urdf
   posewise export campaign.yaml estimate.json --dh calibrated.yaml
   posewise export campaign.yaml estimate.json --ur-kinematics my_robot_calibration.yaml
+  posewise export campaign.yaml estimate.json --urdf calibrated.urdf --map map.c --geometry estimate
 
 The estimate is what calibrate --out wrote. Every file is read back before it takes its place: its
 flange must be within 1e-9 m of the robot's at 1000 configurations (of --ur-kinematics within 1e-6 m
@@ -32,6 +34,10 @@ the limits, and the cell if the campaign has one): that of least squares of the 
 as if it were calibrated there, base and targets along with it. What is lost is printed, beside what
 the robot misses that is not calibrated. --geometry estimate writes the estimate's own geometry, for
 a program that adds the other errors itself.
+
+--map writes these other errors as corrections of joint values: a C source with the function
+posewise_joints_to_send(), or its table (.csv). The file says how it is used; what is left at random
+configurations is printed and stands in it.
 
 The URDF is the one the campaign's robot comes from, and stays as it is (names, order, comments,
 layout) but for the numbers of joint origins between base link and tip link. The base as the
@@ -85,6 +91,9 @@ io::ExportedRobot make_robot(const ExportArguments& arguments, const io::Campaig
             return ur_frames(robot.written().robot, robot.written().errors);
         });
     }
+    if (!paths.map.empty()) {
+        robot.map = compute_from(arguments.estimate, [&] { return correction_map(file, found); });
+    }
     return robot;
 }
 
@@ -104,16 +113,27 @@ void write_files(const ExportPaths& paths, const io::CampaignFile& file, io::Exp
         add(paths.ur_kinematics,
             io::write_ur_kinematics(paths.ur_kinematics, title, *robot.frames, chain, errors));
     }
+    if (robot.map) io::write_correction_map(paths.map, file.name, *robot.map);
 }
 
 void export_estimate(const ExportArguments& arguments, const CommonOptions& common) {
     const ExportPaths& paths = arguments.paths;
-    if (paths.urdf.empty() && paths.dh.empty() && paths.ur_kinematics.empty()) {
-        throw CLI::RequiredError("--urdf, --dh or --ur-kinematics");
+    const bool has_geometry =
+        !(paths.urdf.empty() && paths.dh.empty() && paths.ur_kinematics.empty());
+    if (!has_geometry && paths.map.empty()) {
+        throw CLI::RequiredError("--urdf, --dh, --ur-kinematics or --map");
+    }
+    if (!paths.map.empty()) {
+        io::check_map_path(paths.map);
+        if (has_geometry && arguments.geometry == "nearest") {
+            throw CLI::ValidationError("--map",
+                                       "adds to the estimate's own geometry, not to the nearest; "
+                                       "add --geometry estimate");
+        }
     }
     const io::CampaignFile file = io::read_campaign(arguments.campaign);
     check_outputs({&file}, {arguments.estimate, arguments.workspace},
-                  {paths.urdf, paths.dh, paths.ur_kinematics}, common);
+                  {paths.urdf, paths.dh, paths.ur_kinematics, paths.map}, common);
     if (!paths.urdf.empty() && !file.urdf) {
         throw input_error_at({arguments.campaign},
                              "has a robot that does not come from a URDF; only such a one can go "
@@ -143,6 +163,8 @@ void add_export(CLI::App& program, const CommonOptions& common) {
     add_file("--dh", arguments->paths.dh, "Write it as a Denavit-Hartenberg table (YAML)");
     add_file("--ur-kinematics", arguments->paths.ur_kinematics,
              "Write it as kinematics of ur_description (YAML)");
+    add_file("--map", arguments->paths.map,
+             "Write what depends on the configuration for a cell's own software: .c or .csv");
     command
         ->add_option("--geometry", arguments->geometry,
                      "Where errors depend on the configuration: nearest (least squares over the "

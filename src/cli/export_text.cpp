@@ -112,6 +112,21 @@ void print_frames(const io::CampaignFile& file, const std::string& path) {
     print("the half turn from base_link to base_link_inertia is not in it, as ROS has it itself\n");
 }
 
+void print_map(const CorrectionMap& map, const io::CampaignFile& file, const std::string& path) {
+    print(fmt::format("{}: what depends on the configuration, in {} terms, is in {}\n", file.name,
+                      map.terms.size(), detail::escape_controls(path)));
+    detail::Table table{{"joints sent", "RMS/mm", "95 %/mm", "largest/mm", "RMS/mrad"}, {}};
+    const auto add = [&](const char* name, const MapError& error) {
+        table.rows.push_back({name, detail::format_mm(error.rms), detail::format_mm(error.p95),
+                              detail::format_mm(error.largest),
+                              detail::format_fixed(mrad_per_rad * error.orientation, 4)});
+    };
+    add("as the geometry has them", map.geometry_alone);
+    add("with the map", map.with_map);
+    print_section(fmt::format("Off the geometry at {} random configurations", map.pose_count),
+                  table);
+}
+
 }  // namespace
 
 void warn_of(const io::ExportedRobot& robot, const ExportPaths& paths) {
@@ -129,6 +144,7 @@ void print_export(const io::ExportedRobot& robot, const io::CampaignFile& file,
     if (robot.urdf) print_urdf(*robot.urdf, file, paths.urdf);
     if (!robot.dh.empty()) print_dh(robot.dh, file, paths.dh);
     if (robot.frames) print_frames(file, paths.ur_kinematics);
+    if (robot.map) print_map(*robot.map, file, paths.map);
     print_loss(robot);
     print_places(robot.written(), file.urdf && robot.urdf ? "where the instrument sees base link " +
                                                                 detail::quote(file.urdf->base_link)

@@ -12,6 +12,7 @@ struct ExportPaths {
     std::string urdf;
     std::string dh;
     std::string ur_kinematics;
+    std::string map;
 };
 
 /// Warnings about numbers that are easily taken for something else.

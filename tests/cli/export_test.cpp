@@ -78,5 +78,27 @@ TEST_F(Export, LeavesOutAURsHalfTurnFromBaseLinkAndRefusesAnother) {
                        "kinematics of a UR begin at base_link_inertia");
 }
 
+TEST_F(Export, WritesAMapOfWhatDependsOnTheConfiguration) {
+    calibrate(R"(name: arm
+robot:
+  joints: {q1: {limits_deg: [-150, 150]}, q2: {limits_deg: [-80, 80]}, q3: {limits_deg: [-120, 120]}}
+  elements: [Rz q1, Tz 300 mm, Ry q2, Tz 400 mm, Ry q3, Tx 350 mm]
+sensor: {kind: points, sigma_mm: 0.01, targets: {position_mm: [[0, 30, 50], [40, 0, -20], [0, -40, 10]]}}
+)" + base_);
+    const std::string text = run_well("export c.yaml e.json --map m.c");
+    EXPECT_GT(number_behind(text, "as the geometry has them"), 1e-3) << text;
+    EXPECT_LT(number_behind(text, "with the map"), 1e-3) << text;
+    EXPECT_NE(text_of("m.c").find("void posewise_joints_to_send("), std::string::npos);
+    const auto document = nlohmann::json::parse(
+        run_well("export c.yaml e.json --map m.csv --dh d.yaml --geometry estimate --json"));
+    EXPECT_GT(document.at("map").at("geometry_alone").at("largest_mm"),
+              document.at("map").at("geometry_alone").at("p95_mm"));
+    EXPECT_LT(document.at("map").at("with_map").at("largest_mm"), 1e-2);
+    expect_input_error("export c.yaml e.json --map m.txt", "m.txt: must end in .c");
+    const Outcome nearest = run("export c.yaml e.json --map m2.c --dh d.yaml");
+    EXPECT_EQ(nearest.code, 2);
+    EXPECT_NE(nearest.err.find("add --geometry estimate"), std::string::npos) << nearest.err;
+}
+
 }  // namespace
 }  // namespace posewise::testing

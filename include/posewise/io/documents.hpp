@@ -14,6 +14,7 @@
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/correction.hpp"
+#include "posewise/task/correction_map.hpp"
 #include "posewise/task/doubts.hpp"
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"
@@ -88,6 +89,7 @@ struct ExportedRobot {
     std::vector<DhRow> dh;           ///< empty: not asked for
     std::optional<UrFrames> frames;  ///< for a UR
     std::vector<ReadBack> read_back;
+    std::optional<CorrectionMap> map = {};  ///< of the terms; nothing: not asked for
 
     const Geometry& written() const { return is_nearest ? *nearest : estimated; }
 };

@@ -250,6 +250,20 @@ Json read_back_to_json(const ReadBack& file) {
             {"configurations", file.difference.configuration_count}};
 }
 
+Json map_error_to_json(const MapError& error) {
+    return {{"rms_mm", mm_per_m * error.rms},
+            {"p95_mm", mm_per_m * error.p95},
+            {"largest_mm", mm_per_m * error.largest},
+            {"rms_mrad", mrad_per_rad * error.orientation}};
+}
+
+Json map_to_json(const CorrectionMap& map) {
+    return {{"terms", map.terms.size()},
+            {"configurations", map.pose_count},
+            {"geometry_alone", map_error_to_json(map.geometry_alone)},
+            {"with_map", map_error_to_json(map.with_map)}};
+}
+
 }  // namespace
 
 std::string with_sentences(const std::string& document, const std::vector<std::string>& warnings,
@@ -378,6 +392,7 @@ std::string to_json(const ExportedRobot& robot, const Campaign& campaign) {
     }
     if (robot.frames) document["ur_kinematics"] = make_list(*robot.frames, detail::base_to_json);
     document["not_exported"] = robot.terms;
+    if (robot.map) document["map"] = map_to_json(*robot.map);
     document["read_back"] = make_list(robot.read_back, read_back_to_json);
     return detail::json_text(document);
 }
