@@ -189,6 +189,21 @@ std::string describe_influence(const Calibration& calibration, bool is_angle) {
                        format_error(held_out, is_angle), format_error(fit, is_angle));
 }
 
+/// "; with the temperature (2.4 C): z changes by 0.012 mm per C, give or take 0.004 mm, p = 0.001".
+std::string describe_conditions(const Calibration& calibration) {
+    std::string text;
+    for (const ConditionTrend& condition : calibration.condition_trends) {
+        const OrderSlope& worst = condition.trend.worst();
+        text += fmt::format(
+            "; by the {} ({} {}): {} changes by {} per {}, give or take {}, p = {}", condition.name,
+            format_short(condition.range, 3), condition.unit, worst.axis,
+            format_error(worst.change / condition.range, worst.is_angle), condition.unit,
+            format_error(worst.detectable / condition.range, worst.is_angle),
+            format_short(worst.probability, 2));
+    }
+    return text;
+}
+
 std::string describe_order(const Calibration& calibration) {
     if (!calibration.order_trend) return "not known: too few configurations";
     const OrderTrend& trend = *calibration.order_trend;
@@ -304,7 +319,7 @@ std::vector<Answer> answer(const Calibration& calibration) {
     add("expected", "As expected", compare_expected(calibration, judged, is_angle));
     add("limit", "What limits it", describe_limit(calibration, is_angle));
     add("influence", "Which pose matters most", describe_influence(calibration, is_angle));
-    add("drift", "Drift", describe_order(calibration));
+    add("drift", "Drift", describe_order(calibration) + describe_conditions(calibration));
     add("more", "More poses for 20 % less", describe_more(calibration, is_angle));
     add("residuals", "Residuals", judge_residuals(calibration));
     add("missing_errors", "Errors left out", describe_missing_errors(calibration));

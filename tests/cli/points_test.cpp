@@ -236,12 +236,43 @@ TEST_F(Points, ATableMayHaveMoreColumns) {
     std::string text;
     std::istringstream lines(text_of("m.csv"));
     for (std::string line; std::getline(lines, line);) {
-        if (line[0] != '#') text += line + (text.empty() ? ",time,temperature_C\n" : ",12:00,21\n");
+        if (line[0] != '#') text += line + (text.empty() ? ",clock,rms_um\n" : ",12:00,21\n");
     }
     write_text("more.csv", text);
     EXPECT_EQ(run("calibrate c.yaml -m more.csv").err,
-              "posewise: warning: more.csv: columns 'time', 'temperature_C' are not used\n");
+              "posewise: warning: more.csv: columns 'clock', 'rms_um' are not used\n");
     EXPECT_EQ(result_of("more.csv"), result_of("m.csv"));
+}
+
+TEST_F(Points, TimesAndTemperaturesAreLookedForInTheResiduals) {
+    std::string text;
+    std::istringstream lines(text_of("m.csv"));
+    int row = 0;
+    for (std::string line; std::getline(lines, line);) {
+        if (line[0] == '#') continue;
+        if (text.empty()) {
+            text = line + ",time,temperature_C\n";
+            continue;
+        }
+        ++row;
+        text += line + fmt::format(",2026-01-31 {:02}:{:02}:00,{}\n", 23 - row % 2, row % 60,
+                                   21 + 0.1 * (row % 7));
+    }
+    write_text("more.csv", text);
+    const Outcome outcome = run("calibrate c.yaml -m more.csv -o e.json");
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_NE(outcome.out.find("; by the time ("), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("; by the temperature (0.6 C): "), std::string::npos) << outcome.out;
+    const auto document = nlohmann::json::parse(text_of("e.json"));
+    const auto& trends = document.at("accuracy").at("condition_trends");
+    ASSERT_EQ(trends.size(), 2U);
+    EXPECT_EQ(trends[0].at("unit"), "h");
+    EXPECT_NEAR(trends[1].at("range").get<double>(), 0.6, 1e-9);
+    EXPECT_EQ(trends[1].at("axes").size(), 3U);
+    // One cell that is no number: the column is passed over.
+    write_text("more.csv", text.replace(text.rfind(",21") + 1, 2, "warm"));
+    EXPECT_NE(run("calibrate c.yaml -m more.csv").err.find("column 'temperature_C' is not used"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,21 @@ struct OrderTrend {
     const OrderSlope& worst() const { return slopes[strongest]; }
     bool is_plain() const { return worst().probability < 0.01; }
     bool is_possible() const { return worst().probability < 0.05; }
+};
+
+/// What was noted beside measurements, such as the time or a temperature.
+struct Condition {
+    std::string name;                      ///< "time"
+    std::string unit;                      ///< "h"
+    std::map<std::string, double> values;  ///< by configuration id, in that unit
+};
+
+/// Whether residuals follow a condition, by a straight line.
+struct ConditionTrend {
+    std::string name;
+    std::string unit;
+    double range = 0;  ///< from the least to the largest value, over which slopes change
+    OrderTrend trend;  ///< whose slopes have no `early`
 };
 
 /// The configuration that the others predict worst, compared with how it is fitted.

@@ -76,6 +76,8 @@ struct CalibrationOptions {
     /// Configurations that are not used but judged separately, such as a plan's verification poses.
     /// None may be in `used`, which must be stated.
     std::vector<Index> verification{};
+    /// What was noted beside the measurements, to look for in the residuals.
+    std::vector<Condition> conditions{};
     /// What leave_out() removed from the measurements by hand, for the record.
     std::vector<std::string> excluded{};
     /// An earlier estimate; needs Joint.
@@ -151,6 +153,8 @@ struct Calibration {
     std::optional<HeldOutComparison> held_out_comparison;
     std::optional<Influence> influence;     ///< the pose that matters most
     std::optional<OrderTrend> order_trend;  ///< whether residuals drift
+    /// Whether they follow CalibrationOptions::conditions; of four configurations at least.
+    std::vector<ConditionTrend> condition_trends{};
     /// For means at poses like the measured ones; for samples over the workspace that
     /// estimated_geometry() draws (nothing where it cannot, and for contacts).
     ExpectedError expected;

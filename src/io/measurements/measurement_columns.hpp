@@ -34,6 +34,11 @@ inline constexpr std::string_view nearest_column = "nearest";
 inline constexpr std::array<std::string_view, 5> correction_columns{
     "residual_mm", "residual_mrad", "uncorrected_mm", "uncorrected_mrad", "note"};
 
+/// What was noted beside a sample: seconds, or a date and a time of day, or the latter alone.
+inline constexpr std::string_view time_column = "time";
+inline constexpr std::string_view time_seconds_column = "time_s";
+inline constexpr std::string_view temperature_column = "temperature_C";
+
 enum class Role {
     Configuration,
     Sample,
@@ -43,6 +48,8 @@ enum class Role {
     Joint,  ///< or a measured torque: a number of the configuration
     Observation,
     Orientation,
+    Time,         ///< of a sample, of measurements
+    Temperature,  ///< likewise
     Unused,  ///< torque that the campaign makes no use of, what plan and correct write beside, or
              ///< of measurements whatever else there is
 };

@@ -108,6 +108,10 @@ class HeaderReader {
         if (name == visible_targets && !has_contact_) return Column{Role::VisibleTargets};
         if (name == purpose_column) return Column{Role::Purpose};
         if (name == contact && has_contact_) return Column{Role::Contact};
+        if (content_ == Content::JointsAndObservations) {
+            if (name == time_column || name == time_seconds_column) return Column{Role::Time};
+            if (name == temperature_column) return Column{Role::Temperature};
+        }
         const NameWithUnit with_unit = split_unit(name);
         const auto found = std::find_if(wanted_.begin(), wanted_.end(), [&](const auto& column) {
             return column.stem == name || column.stem == with_unit.stem;

@@ -11,6 +11,7 @@
 #include "io/format/units.hpp"
 #include "measurement_columns.hpp"
 #include "measurement_header.hpp"
+#include "noted_conditions.hpp"
 #include "planned_points.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/measurement/sensors.hpp"
@@ -68,6 +69,7 @@ class RowReader {
         for (std::size_t field = 0; field < columns_.size(); ++field) read_field(field);
         if (content_ == Content::JointsAndObservations && contacts_.empty()) read_targets();
         check_new_sample();
+        note_conditions();
         const auto locate = [this](Index joint) {
             return csv_.locate(field_of_joint_[static_cast<std::size_t>(joint)]);
         };
@@ -75,9 +77,16 @@ class RowReader {
         if (field_of_purpose_ && is_each_row_one_) purposes_.emplace_back(read_purpose());
     }
 
+    bool has(Role role) const {
+        return std::ranges::find(columns_, role, &Column::role) != columns_.end();
+    }
     OrientationNotation notation() const {
         if (orientation_fields_.empty()) return OrientationNotation::RotationVector;
         return detail::orientation_forms[columns_[orientation_fields_.front()].form].notation;
+    }
+    /// What the columns of times and temperatures hold.
+    std::vector<Condition> conditions() const {
+        return detail::mean_conditions(times_, temperatures_);
     }
     /// Of each row that is a configuration by itself, where the file says it.
     const std::vector<std::string>& purposes() const { return purposes_; }
@@ -141,10 +150,23 @@ class RowReader {
                 return;
             case Role::Observation:
             case Role::Orientation:
-                return;          // by read_targets()
-            case Role::Purpose:  // by read_purpose()
+                return;              // by read_targets()
+            case Role::Purpose:      // by read_purpose()
+            case Role::Time:         // by note_conditions()
+            case Role::Temperature:  // likewise
             case Role::Unused:
                 return;
+        }
+    }
+
+    void note_conditions() {
+        for (std::size_t field = 0; field < columns_.size(); ++field) {
+            if (columns_[field].role == Role::Time) {
+                times_.emplace_back(row_.id, csv_.fields()[field]);
+            }
+            if (columns_[field].role == Role::Temperature) {
+                temperatures_.emplace_back(row_.id, csv_.fields()[field]);
+            }
         }
     }
 
@@ -327,6 +349,8 @@ class RowReader {
     bool is_each_row_one_;                         ///< a configuration by itself
     std::vector<std::size_t> orientation_fields_;  ///< if it is not a rotation vector
     std::unordered_set<std::string> seen_;
+    detail::Notes times_;
+    detail::Notes temperatures_;
     detail::Sample row_;
 };
 
@@ -349,6 +373,15 @@ ReadFile read_csv(detail::CsvReader csv, const std::string& path, const Campaign
     while (csv.next_row()) row.add_to(samples);
     MeasurementsFile measurements{samples.finish(path), std::move(header.unused)};
     measurements.notation = row.notation();
+    measurements.conditions = row.conditions();
+    for (const auto& [name, is_there] :
+         {std::pair{detail::time_column, row.has(Role::Time)},
+          std::pair{detail::temperature_column, row.has(Role::Temperature)}}) {
+        const bool is_read =
+            std::ranges::any_of(measurements.conditions,
+                                [&](const Condition& one) { return name.starts_with(one.name); });
+        if (is_there && !is_read) measurements.unused_columns.emplace_back(name);
+    }
     if (measurements.notation == OrientationNotation::RollPitchYaw &&
         measurements.observations.cols() > 0) {
         measurements.roll_pitch_yaw = measurements.observations.rightCols(3);

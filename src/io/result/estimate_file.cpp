@@ -91,6 +91,23 @@ void add_residual_answers(Json& accuracy, const Calibration& calibration) {
                                    {"is_beside_joints", trend->is_beside_joints},
                                    {"axes", std::move(slopes)}};
     }
+    for (const ConditionTrend& condition : calibration.condition_trends) {
+        Json slopes = Json::array();
+        for (const OrderSlope& slope : condition.trend.slopes) {
+            const std::string own = detail::error_suffix(slope.is_angle);
+            slopes.push_back({{"axis", slope.axis},
+                              {"change" + own, mm * slope.change},
+                              {"detectable" + own, mm * slope.detectable},
+                              {"probability", slope.probability}});
+        }
+        accuracy["condition_trends"].push_back(
+            {{"name", condition.name},
+             {"unit", condition.unit},
+             {"range", condition.range},
+             {"strongest", condition.trend.worst().axis},
+             {"is_beside_joints", condition.trend.is_beside_joints},
+             {"axes", std::move(slopes)}});
+    }
 }
 
 /// Numbers of an expected error, RMS and 95 %, by name without unit: for JSON and CSV.

@@ -113,38 +113,48 @@ std::optional<Line> fit_line(const VectorXd& x, const VectorXd& y, const Remaind
 
 }  // namespace
 
-std::optional<OrderTrend> find_order_trend(const Campaign& campaign,
-                                           const Measurements& measurements,
-                                           const RowMatrixXd& residuals) {
-    constexpr Index least = 4;
-    constexpr double level = 0.05;
-    std::vector<Index> shown;  // configurations with readings
+namespace {
+
+/// Means of the residuals of configurations with readings.
+struct MeanResiduals {
+    std::vector<Index> shown;  ///< numbers of the configurations
+    RowMatrixXd means;         ///< shown x axes
+};
+
+MeanResiduals mean_residuals(const Measurements& measurements, const RowMatrixXd& residuals) {
+    MeanResiduals found;
     const auto rows = rows_of_configurations(measurements);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (rows[i].second > 0) shown.push_back(static_cast<Index>(i));
+        if (rows[i].second > 0) found.shown.push_back(static_cast<Index>(i));
     }
-    const Index count = std::ssize(shown);
-    if (count < least) return std::nullopt;
-    RowMatrixXd means(count, residuals.cols());
-    for (Index k = 0; k < count; ++k) {
+    found.means.resize(std::ssize(found.shown), residuals.cols());
+    for (Index k = 0; k < found.means.rows(); ++k) {
         const auto [first, number] =
-            rows[static_cast<std::size_t>(shown[static_cast<std::size_t>(k)])];
-        means.row(k) = residuals.middleRows(first, number).colwise().mean();
+            rows[static_cast<std::size_t>(found.shown[static_cast<std::size_t>(k)])];
+        found.means.row(k) = residuals.middleRows(first, number).colwise().mean();
     }
-    const VectorXd order = VectorXd::LinSpaced(count, 1, static_cast<double>(count));
-    MatrixXd columns =
-        position_columns(campaign.robot, measurements.configurations(shown, Eigen::all));
+    return found;
+}
+
+constexpr Index least_of_trend = 4;  // configurations
+
+/// Lines over x, one value a row of the means, in its order; their changes are over its range.
+std::optional<OrderTrend> find_trend(const Campaign& campaign, const RowMatrixXd& configurations,
+                                     const RowMatrixXd& means, const VectorXd& x) {
+    constexpr double level = 0.05;
+    const Index count = means.rows();
+    if (count < least_of_trend) return std::nullopt;
+    MatrixXd columns = position_columns(campaign.robot, configurations);
     OrderTrend trend;
     trend.is_beside_joints = count >= 3 * (columns.cols() + 1);
     if (!trend.is_beside_joints) columns = columns.leftCols(1).eval();
     const Remainder remainder(columns);
     const std::vector<std::string> axes = residual_axes(campaign);
     const auto axis_count = static_cast<double>(axes.size());
-    const Index first_tenth = (count + 9) / 10;
+    const double length = x.maxCoeff() - x.minCoeff();
     double rarest = 2;  // least probability by chance
     for (Index axis = 0; axis < means.cols(); ++axis) {
-        const VectorXd y = means.col(axis);
-        const auto line = fit_line(order, y, remainder);
+        const auto line = fit_line(x, means.col(axis), remainder);
         if (!line) continue;
         const double by_chance = line->error > 0
                                      ? two_sided(line->slope / line->error, line->freedom)
@@ -154,16 +164,69 @@ std::optional<OrderTrend> find_order_trend(const Campaign& campaign,
             rarest = by_chance;
             trend.strongest = trend.slopes.size();
         }
-        const auto length = static_cast<double>(count - 1);
         trend.slopes.push_back(
             {axes[static_cast<std::size_t>(axis)], campaign.sensor->is_angle(axis),
              line->slope * length,
-             student_quantile(1 - level / axis_count / 2, line->freedom) * line->error * length,
-             y.head(first_tenth).mean() - y.tail(count - first_tenth).mean(),
+             student_quantile(1 - level / axis_count / 2, line->freedom) * line->error * length, 0,
              std::min(1.0, axis_count * by_chance)});
     }
     if (trend.slopes.empty()) return std::nullopt;
     return trend;
+}
+
+}  // namespace
+
+std::optional<OrderTrend> find_order_trend(const Campaign& campaign,
+                                           const Measurements& measurements,
+                                           const RowMatrixXd& residuals) {
+    const auto [shown, means] = mean_residuals(measurements, residuals);
+    const Index count = means.rows();
+    if (count < least_of_trend) return std::nullopt;
+    auto trend = find_trend(campaign, measurements.configurations(shown, Eigen::all), means,
+                            VectorXd::LinSpaced(count, 1, static_cast<double>(count)));
+    if (!trend) return std::nullopt;
+    const std::vector<std::string> axes = residual_axes(campaign);
+    const Index first_tenth = (count + 9) / 10;
+    for (OrderSlope& slope : trend->slopes) {
+        const Index axis = std::ranges::find(axes, slope.axis) - axes.begin();
+        const VectorXd y = means.col(axis);
+        slope.early = y.head(first_tenth).mean() - y.tail(count - first_tenth).mean();
+    }
+    return trend;
+}
+
+std::vector<ConditionTrend> find_condition_trends(const Campaign& campaign,
+                                                  const Measurements& measurements,
+                                                  const RowMatrixXd& residuals,
+                                                  const std::vector<Condition>& conditions) {
+    const auto [shown, means] = mean_residuals(measurements, residuals);
+    std::vector<ConditionTrend> trends;
+    for (const Condition& condition : conditions) {
+        std::vector<std::pair<double, Index>> known;  // value, row of the means
+        for (std::size_t k = 0; k < shown.size(); ++k) {
+            const auto found =
+                condition.values.find(measurements.ids[static_cast<std::size_t>(shown[k])]);
+            if (found == condition.values.end()) continue;
+            known.emplace_back(found->second, static_cast<Index>(k));
+        }
+        std::ranges::sort(known);  // neighbours in the condition are alike
+        if (std::ssize(known) < least_of_trend) continue;
+        const double range = known.back().first - known.front().first;
+        if (!(range > 0)) continue;
+        VectorXd x(std::ssize(known));
+        std::vector<Index> rows;
+        std::vector<Index> configurations;
+        for (const auto& [value, row] : known) {
+            x[std::ssize(rows)] = value;
+            rows.push_back(row);
+            configurations.push_back(shown[static_cast<std::size_t>(row)]);
+        }
+        const auto trend =
+            find_trend(campaign, measurements.configurations(configurations, Eigen::all),
+                       means(rows, Eigen::all), x);
+        if (trend) trends.push_back({condition.name, condition.unit, range, *trend});
+    }
+    return trends;
 }
 
 std::optional<Influence> find_influence(const Campaign& campaign, const Measurements& measurements,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/measurement/campaign.hpp"
@@ -17,6 +18,13 @@ namespace posewise::detail {
 std::optional<OrderTrend> find_order_trend(const Campaign& campaign,
                                            const Measurements& measurements,
                                            const RowMatrixXd& residuals);
+
+/// The same lines over each condition instead of the order. Conditions of which fewer than four
+/// configurations are known, or that are the same at all of them, are left out.
+std::vector<ConditionTrend> find_condition_trends(const Campaign& campaign,
+                                                  const Measurements& measurements,
+                                                  const RowMatrixXd& residuals,
+                                                  const std::vector<Condition>& conditions);
 
 /// Nothing if no configuration could be predicted without itself.
 std::optional<Influence> find_influence(const Campaign& campaign, const Measurements& measurements,

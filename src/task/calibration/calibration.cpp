@@ -200,6 +200,8 @@ void calibrate_with(Work& work, Calibration& result) {
     result.without_outliers = judge_without_outliers(work, result);
     const RowMatrixXd left = residuals(work.campaign, result.estimate.parameters, work.used);
     result.order_trend = detail::find_order_trend(work.campaign, work.used, left);
+    result.condition_trends =
+        detail::find_condition_trends(work.campaign, work.used, left, work.options.conditions);
     if (const auto& held_out = result.held_out) {
         result.influence = detail::find_influence(work.campaign, work.used, left, *held_out);
         result.held_out_interval = detail::held_out_interval(work.campaign, work.used, *held_out);
