@@ -53,8 +53,13 @@ std::vector<std::pair<std::string, io::PageResiduals>> judged_residuals(
 
 Printed describe_calibration(const CalibrateArguments& arguments, const Calibration& result,
                              const io::Provenance& made_from) {
+    std::string record;
+    for (const auto& [key, text] : made_from.record) {
+        record += fmt::format("{}{}: {}", record.empty() ? "\n" : ", ", key, text);
+    }
+    if (!record.empty()) record += '\n';
     return {made_from.answers,
-            format(result, arguments.has_all_parameters) + describe_start(arguments),
+            format(result, arguments.has_all_parameters) + describe_start(arguments) + record,
             [&] { return io::to_json(result, made_from); }};
 }
 

@@ -228,6 +228,7 @@ std::string describe_exact(const EarlierUse& use) {
 io::Provenance provenance_of(const CLI::App& command, const io::CampaignFile& file,
                              const std::string& path, const Measurements& measured) {
     io::Provenance made_from{path, io::checksum_of(measured), file.path, file.checksum, {}};
+    made_from.record = file.record;
     const std::vector<std::string> of_no_matter{
         "--out", "--predict-out", "--all-parameters", "--report", "--plot", "--json", "--threads"};
     for (const CLI::Option* const option : command.get_options()) {

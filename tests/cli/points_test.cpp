@@ -275,5 +275,16 @@ TEST_F(Points, TimesAndTemperaturesAreLookedForInTheResiduals) {
               std::string::npos);
 }
 
+TEST_F(Points, WhoMeasuredStandsInTheEstimate) {
+    write_text("r.yaml", text_of("c.yaml") + "record: {operator: A. Smith, temperature_C: 21.5}\n");
+    const std::string text = run_well("calibrate r.yaml -m m.csv -o r.json");
+    EXPECT_NE(text.find("\noperator: A. Smith, temperature_C: 21.5\n"), std::string::npos) << text;
+    const auto record = nlohmann::json::parse(text_of("r.json")).at("record");
+    EXPECT_EQ(record.at("operator"), "A. Smith");
+    EXPECT_EQ(record.size(), 2U);
+    write_text("bad.yaml", text_of("c.yaml") + "record: {operater: A. Smith}\n");
+    expect_input_error("calibrate bad.yaml -m m.csv", "did you mean 'operator'?");
+}
+
 }  // namespace
 }  // namespace posewise::testing

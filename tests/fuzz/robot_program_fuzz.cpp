@@ -39,10 +39,17 @@ void read(const std::string& path, ProgramFormat format) {
 
 /// Targets that are replaced by themselves leave the program as it is.
 void replace(const std::string& path, ProgramFormat format) {
-    const io::TargetProgram program = io::read_program_targets(path, format, arm().controller);
+    const io::TargetProgram program =
+        io::read_program_targets(path, format, arm().controller, io::TargetKinds::JointsAndPlaces);
     std::vector<VectorXd> values;
     for (const io::JointTarget& target : program.targets) values.push_back(target.joints);
-    io::replace_targets(program, format, arm().controller, values);
+    std::vector<io::CorrectedPlace> places;
+    for (const io::PlaceTarget& place : program.places) {
+        const VectorXd joints = VectorXd::Zero(6);
+        io::is_of_configuration(place, format, joints);
+        places.push_back({place.frame_from_tool, joints, joints});
+    }
+    io::replace_targets(program, format, arm().controller, values, places);
 }
 
 /// A project whose data, or else whose program, is the input.

@@ -58,6 +58,8 @@ struct CampaignFile : Campaign {
     std::optional<ErrorModel> planned_model;
     std::optional<UrdfSource> urdf;     ///< source of the robot, if it comes from a URDF
     std::vector<std::string> warnings;  ///< parts of it that were not understood, a sentence each
+    /// Who measured, with what, when: keys of section `record` and their texts, in its order.
+    std::vector<std::pair<std::string, std::string>> record{};
     MatMapping mat;
     ControllerJoints controller;   ///< joints of programs; the robot's own where nothing is stated
     std::string controller_maker;  ///< the family that `controller` is of; empty: none is stated

@@ -67,6 +67,7 @@ struct Provenance {
     std::vector<std::pair<std::string, std::vector<std::string>>> options{};
     std::vector<std::string> warnings{};  ///< those given meanwhile, a sentence each
     std::vector<Answer> answers{};        ///< answer() of the calibration
+    std::vector<std::pair<std::string, std::string>> record{};  ///< CampaignFile::record
 };
 
 /// Checksum of configurations, their ids and observations, to tell whether measurements are the

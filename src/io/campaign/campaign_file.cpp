@@ -221,6 +221,15 @@ std::string read_name(const YamlValue& value) {
     return name;
 }
 
+std::vector<std::pair<std::string, std::string>> read_record(const YamlValue& value) {
+    const YamlMap map(value, keys::record);
+    std::vector<std::pair<std::string, std::string>> record;
+    for (const auto& key : keys::record.keys) {
+        if (const auto entry = map.find(key.name)) record.emplace_back(key.name, read_name(*entry));
+    }
+    return record;
+}
+
 /// The model to plan with. Poses chosen for a poorer one than is fitted may not identify it.
 ErrorModel read_planned_model(const YamlValue& value, ErrorModel fitted) {
     const YamlMap planning(value, keys::planning);
@@ -310,6 +319,7 @@ CampaignFile parse(const std::string& content, const std::string& path,
     }
     if (file.cell.speed.size() == 0) file.cell.speed = robot.speed;
     file.controller = ControllerJoints(campaign.robot);
+    if (const auto record = map.find("record")) file.record = read_record(*record);
     if (const auto section = map.find("controller")) {
         const auto [joints, maker] = detail::read_controller(*section, campaign.robot);
         file.controller = joints;

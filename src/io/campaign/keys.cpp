@@ -47,6 +47,8 @@ const YamlKeys file{
         {"cell", "", "limits of the place", "none", "see below"},
         {"controller", "", "how joints are called and counted where programs run",
          "the robot's own joints", "`{maker: fanuc, j23_factor: 1}`"},
+        {"record", "", "who measured with what, for the estimate's document; nothing rests on it",
+         "none", "`{operator: A. Smith, serial: LT-204}`"},
     }};
 
 const YamlKeys planning{
@@ -407,11 +409,21 @@ const YamlKeys controller{
          "`[1341.4, 1341.4, 1341.4, 1000, 1000, 622.2]`"},
     }};
 
+const YamlKeys record{
+    "record",
+    {
+        {"operator", "", "who measured", "not stated", "`A. Smith`"},
+        {"instrument", "", "what was measured with", "not stated", "`laser tracker AT960`"},
+        {"serial", "", "its serial number, or the robot's", "not stated", "`LT-204`"},
+        {"date", "", "when", "not stated", "`2026-01-31`"},
+        {"temperature_C", "", "in the cell", "not stated", "`21.5`"},
+    }};
+
 const std::vector<const YamlKeys*>& all() {
     static const std::vector<const YamlKeys*> tables{
-        &file,   &planning,  &robot,    &joint,  &dh,     &row,          &terms,
-        &weight, &sensor,    &noise,    &places, &spread, &measurements, &mat,
-        &cell,   &joint_sum, &keep_out, &solid,  &link,   &sight,        &controller};
+        &file,     &planning, &robot,  &joint,  &dh,           &row,   &terms, &weight,
+        &sensor,   &noise,    &places, &spread, &measurements, &mat,   &cell,  &joint_sum,
+        &keep_out, &solid,    &link,   &sight,  &controller,   &record};
     return tables;
 }
 

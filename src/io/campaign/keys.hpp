@@ -9,7 +9,7 @@
 namespace posewise::detail::keys {
 
 extern const YamlKeys file, planning, robot, joint, dh, row, terms, weight, sensor, noise, places,
-    spread, measurements, mat, cell, joint_sum, keep_out, solid, link, sight, controller;
+    spread, measurements, mat, cell, joint_sum, keep_out, solid, link, sight, controller, record;
 
 const std::vector<const YamlKeys*>& all();
 

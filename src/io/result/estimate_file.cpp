@@ -295,6 +295,7 @@ Json estimate_to_json(const Calibration& calibration, Provenance made_from) {
     document["campaign"] = campaign.name;
     document["warnings"] = made_from.warnings;
     detail::provenance_fields(fields, made_from);
+    for (const auto& [key, text] : made_from.record) document["record"][key] = text;
     document["measured"] = measured_to_json(calibration.measured);
     if (!calibration.excluded.empty()) document["excluded"] = calibration.excluded;
     if (!calibration.held.empty()) document["held"] = calibration.held;
