@@ -43,7 +43,7 @@ VALUES = {
     "--precision": "30%", "--truth": "7", "--vary": "sensor.sigma_mm=0.01,0.05", "--points": "2", "--store": "out2.sqlite",
     "--shard": "1/2", "--merge": "part1.sqlite", "--directions": "2", "--campaign": "other.yaml", "--configurations": "poses.csv",
     "--write-campaign": "out4.yaml", "--tip": "x", "--targets": "out5.csv", "--points-unit": "m", "--random-order": "2",
-    "--for": "ros2", "--read": "program.csv", "--subset": "own.txt", "--write-blocks": "out6.npy", "--dwell": "3", "--speed": "30", "--handshake": "pause"}
+    "--for": "ros2", "--read": "program.csv", "--subset": "own.txt", "--write-blocks": "out6.npy", "--reference": "p1", "--every": "2", "--dwell": "3", "--speed": "30", "--handshake": "pause"}
 PLAN = ["-c", "d", "--pool", "40", "--starts", "1", "--workspace-poses", "10", "-o", "out.json"]
 CHOICE = ["-k", "6", "--starts", "1", "-o", "out.json"]
 STUDY = ["arm.yaml", "-m", "many.csv", "-k", "6", "--random", "4", "--starts", "1"]

@@ -65,6 +65,8 @@ constexpr std::pair<std::string_view, Group> group_of_option[] = {
     {"handshake", Asked},
     {"reverse", Asked},
     {"dry-run", Asked},
+    {"reference", Rare},
+    {"every", Rare},
     {"vary", Asked},
     {"points", Rare},
     {"points-unit", Rare},

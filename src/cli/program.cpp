@@ -48,6 +48,10 @@ Joints are rounded to the digits of the file first, then checked again. They are
 they are written to PLAN.as_sent.csv, in the model's joints, for calibrate and select. The loss by
 rounding is printed: the criterion's value and the predicted accuracy, as planned and as sent.
 
+--reference p3 --every 5 visits pose p3 again after each five others, as ref1, ref2, ..., with targets of
+these names; they stand in PLAN.as_sent.csv, too. What residuals change by meanwhile is drift, of robot or
+instrument, whatever the model lacks: calibrate says so ("Drift").
+
 --read converts a program that was edited on the pendant to configurations (CSV), lists the poses that
 were dropped, moved (which joint most, and by how much) or lost their name, and warns of stops and
 ways that violate joint limits, joint sums or the cell. Jumps and moves within conditions are refused.
@@ -66,6 +70,8 @@ struct ProgramArguments {
     std::optional<Index> speed_percent;
     std::string handshake = "none";
     RouteOptions route;
+    std::string reference;  ///< pose that is visited again; empty: none
+    Index every = 5;
     bool is_dry_run = false;
 };
 
@@ -222,13 +228,22 @@ std::string describe(const io::ProgramReport& report) {
     return text;
 }
 
+/// Rounded, and with the visits of the reference pose.
+Plan as_sent(const ProgramArguments& arguments, const Plan& plan, const Campaign& campaign,
+             const ControllerJoints& controller, const VectorXd& steps) {
+    const Plan sent = sent_plan(plan, campaign, controller, steps);
+    if (arguments.reference.empty()) return sent;
+    return with_revisits(sent, arguments.reference, arguments.every);
+}
+
 void write_program(const ProgramArguments& arguments, const CommonOptions& common) {
     const io::ProgramFormat format = io::parse_program_format(arguments.format);
     const PlanAndCampaign both = read_both(arguments);
     const ControllerJoints& controller = both.campaign.controller;
     const VectorXd steps = program_steps(format, both.campaign);
-    const Plan sent = compute_from(
-        arguments.plan, [&] { return sent_plan(both.plan, both.campaign, controller, steps); });
+    const Plan sent = compute_from(arguments.plan, [&] {
+        return as_sent(arguments, both.plan, both.campaign, controller, steps);
+    });
     const std::vector<RouteStop> route = compute_from(arguments.plan, [&] {
         return route_of(sent, both.campaign, controller, steps, arguments.route);
     });
@@ -247,7 +262,9 @@ void write_program(const ProgramArguments& arguments, const CommonOptions& commo
     if (is_new_folder) outputs = {arguments.out};
     outputs.push_back(report.sent);
     check_outputs({&both.campaign}, {arguments.plan}, outputs, common);
-    report.loss = compute_from(arguments.plan, [&] { return find_loss(both, sent); });
+    report.loss = compute_from(arguments.plan, [&] {
+        return find_loss(both, sent_plan(both.plan, both.campaign, controller, steps));
+    });
     warn_of_rounding(report);
     report.stale = io::stale_program_files(arguments.out, format, program);
     const std::string before = content_of(report.sent);
@@ -320,6 +337,10 @@ void read_program(const ProgramArguments& arguments, const CommonOptions& common
     } else {
         campaign = io::read_campaign(arguments.plan);
     }
+    if (!sent && !arguments.reference.empty()) {
+        throw input_error_at({arguments.plan},
+                             "is no plan, which --reference is of; must be one, as plan writes it");
+    }
     check_outputs({&campaign}, {arguments.plan, arguments.read}, {arguments.out}, common);
     if (campaign.robot.configuration_size() != campaign.robot.joint_count()) {
         throw input_error_at({campaign.path},
@@ -327,8 +348,9 @@ void read_program(const ProgramArguments& arguments, const CommonOptions& common
     }
     const VectorXd steps = program_steps(format, campaign);
     if (sent) {
-        sent = compute_from(arguments.plan,
-                            [&] { return sent_plan(*sent, campaign, campaign.controller, steps); });
+        sent = compute_from(arguments.plan, [&] {
+            return as_sent(arguments, *sent, campaign, campaign.controller, steps);
+        });
     }
     const io::ProgramContent content = io::program_content(
         arguments.read, io::read_robot_program(arguments.read, format, campaign.controller),
@@ -360,6 +382,7 @@ void run_program(ProgramArguments arguments, const CommonOptions& common) {
                                    "needs --repeats 2 or more, of which every second "
                                    "pass is reversed");
     }
+    arguments.route.finds_ways = !arguments.reference.empty();
     if (arguments.speed_percent && arguments.format == "csv") {
         throw CLI::ValidationError("--speed", "a CSV file has no speed");
     }
@@ -408,6 +431,15 @@ void add_program_options(CLI::App& command, ProgramArguments& arguments) {
     writing(command.add_flag("--reverse", arguments.route.is_reversed,
                              "Go back the same way in every second pass: poses are reached from "
                              "the other side"));
+    CLI::Option* const reference = command.add_option(
+        "--reference", arguments.reference,
+        "Visit this pose again and again, as ref1, ref2, ...: what changes there drifts");
+    command
+        .add_option("--every", arguments.every,
+                    "With --reference: after so many other poses, and after the last")
+        ->check(whole_number(1, 1000))
+        ->capture_default_str()
+        ->needs(reference);
     writing(command.add_flag("--dry-run", arguments.is_dry_run,
                              "Without dwell and handshake, at 10 % speed or less"));
 }

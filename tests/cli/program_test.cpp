@@ -116,6 +116,45 @@ TEST_F(ProgramCommand, WaitsAsItIsTold) {
     expect_same_joints("back.csv", "p.as_sent.csv");
 }
 
+TEST_F(ProgramCommand, VisitsAReferencePoseAgain) {
+    const std::string text = run_well("program p.json --for csv -o a.csv --reference p1 --every 4");
+    const auto rows = rows_of("p.as_sent.csv");
+    std::vector<std::string> ids;
+    std::vector<std::string> reference;
+    for (const auto& row : rows) {
+        if (row[0] == "p1") reference = {row.begin() + 1, row.begin() + 7};
+    }
+    int others = 0;
+    int visits = 0;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        if (rows[i].back() == "via") continue;
+        if (rows[i][0].rfind("ref", 0) == 0) {
+            ++visits;
+            EXPECT_EQ(rows[i][0], "ref" + std::to_string(visits));
+            EXPECT_EQ((std::vector<std::string>{rows[i].begin() + 1, rows[i].begin() + 7}),
+                      reference);
+            EXPECT_LE(others, 4);
+            others = 0;
+        } else {
+            others = rows[i][0] == "p1" ? 0 : others + 1;
+        }
+    }
+    EXPECT_GE(visits, 2);
+    EXPECT_NE(text.find(std::to_string(12 + visits) + " poses in "), std::string::npos) << text;
+    EXPECT_NE(run_well("program p.json --for csv --read a.csv").find("not of the plan: ref1"),
+              std::string::npos);
+    const std::string read =
+        run_well("program p.json --for csv --read a.csv --reference p1 --every 4");
+    EXPECT_EQ(read.find("not of the plan"), std::string::npos) << read;
+    // Measured there, they are configurations of their own, which drift is seen by.
+    run_well("simulate cell.yaml --configurations p.as_sent.csv -o m.csv");
+    EXPECT_NE(run_well("calibrate cell.yaml -m m.csv --folds 0 --prior").find("Drift"),
+              std::string::npos);
+    expect_input_error("program p.json --for csv -o b.csv --reference p99",
+                       "p.json: has no pose to calibrate with called 'p99'");
+    EXPECT_EQ(run("program p.json --for csv -o b.csv --every 3").code, 2);
+}
+
 TEST_F(ProgramCommand, SaysWhichPosesAnEditedProgramHasNot) {
     run_well("program p.json --for csv -o a.csv");
     std::string text = text_of("a.csv");

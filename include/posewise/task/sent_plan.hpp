@@ -40,10 +40,17 @@ RoundingLoss rounding_loss(const Plan& plan, const Plan& sent, const Campaign& c
 RoundingLoss rounding_loss(const Plan& plan, const Plan& sent, const Campaign& campaign,
                            Candidates candidates, const ChoiceOptions& options);
 
+/// The sent plan with one of its poses visited again, as ref1, ref2, ..., after each `every` other
+/// poses to calibrate with, and after the last of them: what changes there drifts. The ways to and
+/// from these visits are not planned; route_of() finds them if it is asked to. Throws InputError if
+/// the plan has no pose to calibrate with of this id, or one that is called like a visit.
+Plan with_revisits(const Plan& sent, const std::string& id, Index every);
+
 /// How often a program visits the poses, and in which order.
 struct RouteOptions {
     Index repeats = 1;         ///< passes over all poses
     bool is_reversed = false;  ///< every second pass goes back along the way of the one before
+    bool finds_ways = false;   ///< where the straight move is not free, instead of refusing it
 };
 
 /// One stop on the way.

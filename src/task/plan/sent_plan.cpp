@@ -195,6 +195,18 @@ class Route {
         stops_.push_back(std::move(stop));
     }
 
+    /// Straight, or around if that is not free.
+    void reach(const RouteStop& stop) {
+        const bool is_free =
+            stops_.empty() ||
+            detail::is_move_free(moving_, stops_.back().configuration, stop.configuration);
+        if (is_free) {
+            go(stop);
+        } else {
+            go_around(stop);
+        }
+    }
+
     /// By the shortest way that is found.
     void go_around(const RouteStop& stop) {
         detail::TourOptions options;
@@ -258,6 +270,46 @@ Plan sent_plan(const Plan& plan, const Campaign& campaign, const ControllerJoint
     return sent;
 }
 
+Plan with_revisits(const Plan& sent, const std::string& id, Index every) {
+    const auto reference = std::ranges::find(sent.poses, id, &PlannedPose::id);
+    if (reference == sent.poses.end()) {
+        throw InputError("has no pose to calibrate with called " + quote(id));
+    }
+    Plan plan = sent;
+    plan.poses.clear();
+    Index visits = 0;
+    Index others = 0;
+    bool is_after_visit = false;
+    const auto visit = [&] {
+        PlannedPose& again = plan.poses.emplace_back(*reference);
+        again.id = fmt::format("ref{}", ++visits);
+        again.via.reset();
+        others = 0;
+        is_after_visit = true;
+    };
+    for (const PlannedPose& pose : sent.poses) {
+        PlannedPose& own = plan.poses.emplace_back(pose);
+        if (is_after_visit) own.via.reset();
+        is_after_visit = false;
+        const bool is_reference = pose.id == id;
+        others = is_reference ? 0 : others + 1;
+        const bool is_last = &pose == &sent.poses.back();
+        if (!is_reference && (others == every || is_last)) visit();
+    }
+    if (is_after_visit && !plan.verification.empty()) plan.verification.front().via.reset();
+    for (Index k = 1; k <= visits; ++k) {
+        const std::string name = fmt::format("ref{}", k);
+        const auto is_called_so = [&](const PlannedPose& pose) { return pose.id == name; };
+        if (std::ranges::any_of(sent.poses, is_called_so) ||
+            std::ranges::any_of(sent.verification, is_called_so)) {
+            throw InputError(
+                "has a pose called " + quote(name) +
+                ", as a visit of the reference pose would be; must be called otherwise");
+        }
+    }
+    return plan;
+}
+
 RoundingLoss rounding_loss(const Plan& plan, const Plan& sent, const Campaign& campaign,
                            const PlanningOptions& options) {
     detail::PlanningProblem problem = detail::state_planning(campaign, options);
@@ -315,7 +367,12 @@ std::vector<RouteStop> route_of(const Plan& sent, const Campaign& campaign,
     for (const auto* poses : {&sent.poses, &sent.verification}) {
         for (const PlannedPose& pose : *poses) {
             if (pose.via) pass.go({Kind::Via, "", 1, *pose.via});
-            pass.go({Kind::Pose, pose.id, repeats * pose.times, pose.configuration});
+            const RouteStop stop{Kind::Pose, pose.id, repeats * pose.times, pose.configuration};
+            if (options.finds_ways) {
+                pass.reach(stop);
+            } else {
+                pass.go(stop);
+            }
         }
     }
     const RouteStop first = pass.stops().front();
