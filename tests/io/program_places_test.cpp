@@ -248,7 +248,7 @@ TEST(ProgramPlaces, WithMovingExternalAxesStay) {
     }
 }
 
-TEST(CartesianTargets, AreReadFromATable) {
+TEST(CartesianTable, IsReadAsTargets) {
     const TemporaryFolder folder;
     const CampaignFile campaign = cell_with("{}");
     const auto read = [&](const std::string& text) {

@@ -36,7 +36,7 @@ TEST_F(CartesianTargets, AreRefusedByTheirNames) {
     EXPECT_EQ(error(target).find("target 'hole 7' has no joint values to begin at"), 0U)
         << error(target);
     frames_.seed = VectorXd::Zero(6);
-    EXPECT_EQ(error(target), "");
+    EXPECT_EQ(error(target), "no error");
     target.is_wanted = [](const VectorXd& one) { return one[0] > 3; };
     EXPECT_NE(error(target).find("in the configuration that is stated"), std::string::npos);
     target.is_wanted = {};

@@ -224,8 +224,8 @@ std::string read_name(const YamlValue& value) {
 std::vector<std::pair<std::string, std::string>> read_record(const YamlValue& value) {
     const YamlMap map(value, keys::record);
     std::vector<std::pair<std::string, std::string>> record;
-    for (const auto& key : keys::record.keys) {
-        if (const auto entry = map.find(key.name)) record.emplace_back(key.name, read_name(*entry));
+    for (const detail::YamlKey& one : keys::record.keys) {
+        if (const auto entry = map.find(one.key)) record.emplace_back(one.key, read_name(*entry));
     }
     return record;
 }

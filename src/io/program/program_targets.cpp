@@ -389,7 +389,7 @@ void TargetReader::read_ur() {
         const bool is_target = (letter == '(' && is_move(word)) ||
                                (letter == '=' && names.contains(std::string(word)));
         if (!is_target || (is_pose && !takes_places())) {
-            if (is_pose) leave(at);
+            if (is_pose && word != "set_tcp") leave(at);  // which is the tool
             continue;
         }
         constexpr std::size_t pose_numbers = 6;
