@@ -1,6 +1,7 @@
 #include <cmath>
 #include <span>
 
+#include "core/parallel.hpp"
 #include "core/statistics.hpp"
 #include "measurement/noise.hpp"
 #include "posewise/calibrator/estimate.hpp"
@@ -126,7 +127,9 @@ ExpectedError expected_sample_error(const Campaign& campaign, const Estimate& es
 }
 
 std::vector<ErrorPrediction> predict_errors(const Campaign& campaign, const Estimate& estimate,
-                                            const RowMatrixXd& configurations) {
+                                            const RowMatrixXd& configurations,
+                                            const StopSignal& stop) {
+    constexpr Index at_once = 64;
     const Sensor& sensor = *campaign.sensor;
     for (Index i = 0; i < configurations.rows(); ++i) {
         campaign.robot.check_configuration(configurations.row(i).transpose());
@@ -140,11 +143,17 @@ std::vector<ErrorPrediction> predict_errors(const Campaign& campaign, const Esti
             campaign.spread.is_prior ? 0 : estimate.variance_of(is_angle).degrees_of_freedom;
         ErrorPrediction& prediction = predictions.emplace_back();
         prediction.is_angle = is_angle;
-        prediction.overall = summarise(points, freedom);
+        prediction.each.resize(static_cast<std::size_t>(configurations.rows()));
         const auto width = static_cast<std::size_t>(sensor.target_count());
-        for (std::size_t i = 0; i < points.size(); i += width) {
-            prediction.each.push_back(summarise(std::span(points).subspan(i, width), freedom));
-        }
+        detail::for_each_range(configurations.rows(), at_once, [&](Index first, Index last) {
+            stop.check("predicting errors");
+            for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last);
+                 ++i) {
+                prediction.each[i] =
+                    summarise(std::span(points).subspan(i * width, width), freedom);
+            }
+        });
+        prediction.overall = summarise(points, freedom);
     }
     return predictions;
 }

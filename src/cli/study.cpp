@@ -166,16 +166,6 @@ void check_study_usage(const CLI::App& command, const StudyArguments& arguments,
     }
 }
 
-void warn_of_early_stop(const Study& study) {
-    if (study.ending != Ending::Interrupted && study.ending != Ending::TimeLimit) return;
-    print_warning(study.splits == 0 || study.is_simulated
-                      ? "stopped early; what is finished is shown"
-                      : fmt::format("stopped early; the splits that are finished are shown, {} of "
-                                    "{} with {} poses",
-                                    split_count(study.rows.back(), study.criteria.size()),
-                                    study.splits, study.rows.back().pose_count));
-}
-
 void warn_of_precision(const std::vector<Study>& studies) {
     for (const Study& study : studies) {
         if (study.ending != Ending::IterationLimit) continue;
@@ -206,10 +196,8 @@ void study(const CLI::App& command, const StudyArguments& arguments, const Commo
                                            ? study_simulated(arguments, common, stop, extras)
                                            : study_measured(arguments, common, stop, extras);
     interrupted.reset();
+    const std::string early = describe_early_end(studies.front());
     if (studies.front().rows.empty()) {
-        if (stop.is_set()) {
-            throw InputError("stopped before any split was finished; must have longer");
-        }
         // What this shard was to do is done, and kept.
         std::fputs(
             "posewise: no split is finished by this shard; when the others have run, their stores "
@@ -217,7 +205,7 @@ void study(const CLI::App& command, const StudyArguments& arguments, const Commo
             stderr);
         return;
     }
-    warn_of_early_stop(studies.front());
+    if (!early.empty()) print_warning(early);
     warn_of_precision(studies);
     print_studies(studies, arguments, common, std::move(extras));
 }

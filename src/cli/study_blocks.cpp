@@ -71,12 +71,8 @@ void study_blocks(const CLI::App& command, const StudyArguments& arguments,
     options.progress = [&](const Progress& state) { line(state); };
     const BlocksStudy study = posewise::study(std::move(file.blocks), options);
     interrupted.reset();
-    if (study.rows.empty()) {
-        throw InputError("stopped before any pose count was finished; must have longer");
-    }
-    if (study.ending != Ending::Converged) {
-        print_warning("stopped early; the pose counts that are finished are shown");
-    }
+    const std::string early = describe_early_end(study);
+    if (!early.empty()) print_warning(early);
     const Printed printed{answer(study), format(study), [&] { return io::to_json(study); }};
     print(printed, common);
     if (!arguments.csv.empty()) {

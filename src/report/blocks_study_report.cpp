@@ -5,6 +5,7 @@
 
 #include "core/format.hpp"
 #include "core/text.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/report/reports.hpp"
 #include "table.hpp"
 
@@ -142,6 +143,14 @@ std::string format(const BlocksStudy& study, int digits) {
             detail::count_of(study.rows.front().random.subsets, "subset"));
     }
     return text;
+}
+
+std::string describe_early_end(const BlocksStudy& study) {
+    if (study.ending == Ending::Converged) return "";
+    if (study.rows.empty()) {
+        throw InputError("stopped before any pose count was finished; must have longer");
+    }
+    return "stopped early; the pose counts that are finished are shown";
 }
 
 void write_study_csv(const BlocksStudy& study, const WriteText& write) {

@@ -7,6 +7,7 @@
 
 #include "core/format.hpp"
 #include "core/text.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/report/reports.hpp"
 #include "study_table.hpp"
@@ -145,6 +146,20 @@ std::string format(const std::vector<Study>& studies) {
     text += describe_judgement(studies);
     for (const Study& study : studies) text += describe_verdicts(study);
     return text;
+}
+
+std::string describe_early_end(const Study& study) {
+    if (study.ending != Ending::Interrupted && study.ending != Ending::TimeLimit) return "";
+    if (study.rows.empty()) {
+        throw InputError("stopped before any split was finished; must have longer");
+    }
+    if (study.splits == 0 || study.is_simulated) {
+        return "stopped early; what is finished is shown";
+    }
+    return fmt::format(
+        "stopped early; the splits that are finished are shown, {} of {} with {} poses",
+        split_count(study.rows.back(), study.criteria.size()), study.splits,
+        study.rows.back().pose_count);
 }
 
 void write_study_csv(const Study& study, const WriteText& write) {

@@ -118,6 +118,10 @@ std::string format(const Study& study);
 /// be studied.
 std::string format(const std::vector<Study>& studies);
 
+/// That a study was stopped before all was finished, in words; empty if it was not. Throws
+/// InputError if nothing was finished by then.
+std::string describe_early_end(const Study& study);
+
 /// Receives a part of a text.
 using WriteText = std::function<void(std::string_view)>;
 
@@ -131,6 +135,8 @@ void write_study_csv(const std::vector<Study>& studies, const WriteText& write);
 
 /// Chosen, random and own subsets of plain blocks, a line for each pose count and criterion.
 std::string format(const BlocksStudy& study, int digits = 6);
+/// As for other studies.
+std::string describe_early_end(const BlocksStudy& study);
 /// Writes it as CSV, a line for each subset: poses, criterion, who chose ("best", "random 5 %",
 /// "random 50 %", "random 95 %", or the name of an own subset), value, bound, efficiency,
 /// candidates.

@@ -33,7 +33,9 @@ struct ChoiceOptions : PlanRequest {
     std::optional<Measurements> held{};  ///< measured already: their information counts
     RowMatrixXd test_poses{};            ///< configurations for G and V; empty: the candidates
     std::vector<Index> groups{};         ///< label of each candidate; empty: none
-    Blocks held_blocks{};                ///< for plain blocks, in place of `held`
+    /// For plain blocks, in place of `held`. Rows after the last block are known, too, but are no
+    /// pose's: those of a prior.
+    Blocks held_blocks{};
     Blocks test_blocks{};
     /// For measured candidates: judges the calibration with all of them.
     JudgeCalibration judge = refuse_faults;

@@ -317,7 +317,7 @@ ChoiceProblem state_choice(Blocks candidates, const ChoiceOptions& options) {
         const Index L = problem.blocks.parameter_count();
         hold(problem, RowMatrixXd::Identity(L, L));
     }
-    if (options.held_blocks.count() > 0) hold_blocks(problem, options.held_blocks);
+    if (options.held_blocks.matrix.rows() > 0) hold_blocks(problem, options.held_blocks);
     if (options.test_blocks.count() > 0) {
         check_columns(problem, options.test_blocks, options.sources.test_poses);
         problem.test_poses = std::make_unique<Blocks>(options.test_blocks);

@@ -214,9 +214,11 @@ void check_numbers(const Plan& plan, const ChoiceProblem& problem, const std::ve
                      std::abs(plan.efficiency - actual) <= of_bound);
 }
 
-/// `campaign` is null for plain blocks.
-Verification check(const Plan& plan, const ChoiceProblem& problem, const Campaign* campaign) {
-    return detail::collect(problem.blocks.count(), [&](Findings& findings) {
+/// `campaign` is null for plain blocks. Throws InputError if it is stopped.
+Verification check(const Plan& plan, ChoiceProblem problem, const StopSignal& stop,
+                   const Campaign* campaign) {
+    problem.options.stop = stop;
+    Verification verification = detail::collect(problem.blocks.count(), [&](Findings& findings) {
         const std::string mismatch = campaign ? describe_mismatch(plan, *campaign) : "";
         if (!mismatch.empty()) throw InputError(mismatch);
         check_candidates(plan, problem, findings);
@@ -226,17 +228,20 @@ Verification check(const Plan& plan, const ChoiceProblem& problem, const Campaig
         check_numbers(plan, problem, poses, findings);
         if (campaign != nullptr) findings.compare_assumptions(plan, *campaign);
     });
+    stop.check("verifying");
+    return verification;
 }
 
 }  // namespace
 
 Verification verify(const Plan& plan, const Campaign& campaign, const Candidates& candidates,
                     const ChoiceOptions& options) {
-    return check(plan, detail::state_choice(campaign, candidates, options), &campaign);
+    return check(plan, detail::state_choice(campaign, candidates, options), options.stop,
+                 &campaign);
 }
 
 Verification verify(const Plan& plan, const Blocks& candidates, const ChoiceOptions& options) {
-    return check(plan, detail::state_choice(candidates, options), nullptr);
+    return check(plan, detail::state_choice(candidates, options), options.stop, nullptr);
 }
 
 }  // namespace posewise
