@@ -8,7 +8,7 @@
 """
 
 from . import _posewise
-from ._calls import Doubt, InputError
+from ._calls import Doubt, InputError, Interrupted
 from .calibration import Estimate, calibrate
 from .campaign import Campaign, Sensor
 from .choice import Choice, design, indices, select
@@ -23,6 +23,7 @@ __all__ = [
     "Doubt",
     "Estimate",
     "InputError",
+    "Interrupted",
     "Plan",
     "Sensor",
     "Study",

@@ -1,26 +1,23 @@
-"""How calls reach the compiled library: tables as files, keywords, messages, progress."""
+"""How calls reach the compiled library: keywords, messages, interrupts, progress."""
 
 from __future__ import annotations
 
 import json
-import os
 import re
 import sys
-import tempfile
 import warnings
-from collections.abc import Callable, Iterable, Mapping
-from contextlib import AbstractContextManager
-from pathlib import Path
-from types import TracebackType
-from typing import Any, Protocol, Union
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NoReturn, TypeVar, Union
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 
 from . import _posewise
 
-Table = Union[pd.DataFrame, str, "os.PathLike[str]"]
+Array = npt.NDArray[np.float64]
 Progress = Union[bool, Callable[[int, int], object], None]
+T = TypeVar("T")
 
 
 class InputError(ValueError):
@@ -29,12 +26,26 @@ class InputError(ValueError):
     @property
     def field(self) -> str | None:
         """The argument that the message is about, where it names one."""
-        named = re.match(r"\w+\(\): (\w+)", str(self)) or re.search(r"`([\w.]+)`", str(self))
-        return named.group(1) if named else None
+        message = str(self)
+        for place in (r"^\w+\(\): `?(\w+)", r"`([\w.]+)`", r"^(\w+):"):
+            if named := re.search(place, message):
+                return named.group(1)
+        return None
 
 
 class Doubt(UserWarning):
     """Something about data or result that should be looked at first."""
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C ended a call that has a result all the same: the best so far, ``.result``."""
+
+    def __init__(self, result: Any) -> None:
+        super().__init__("interrupted; .result of this exception is the best so far")
+        self.result = result
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Interrupted, (self.result,))
 
 
 # What the library's fields are called in Python.
@@ -55,116 +66,113 @@ _keywords = {
 
 def with_keywords(message: str) -> str:
     """The message with arguments of Python in place of the library's fields."""
-    return re.sub(r"`([\w.]+)`", lambda m: f"`{_keywords.get(m.group(1), m.group(1))}`", message)
+    message = re.sub(r"`([\w.]+)`", lambda m: f"`{_keywords.get(m.group(1), m.group(1))}`", message)
+    return message.replace("select(): poses", "select(): k")
 
 
-class Shown(Protocol):
-    """A result of the library."""
-
-    @property
-    def document(self) -> Mapping[str, Any]: ...
-    @property
-    def text(self) -> str: ...
-
-
-class Files(AbstractContextManager["Files"]):
-    """Tables and documents as files for one call of the library.
-
-    Messages then name an argument instead of the file that it was written to.
-    """
-
-    def __init__(self) -> None:
-        self._folder: tempfile.TemporaryDirectory[str] | None = None
-        self._names: dict[str, str] = {}
-
-    def path(self, name: str, suffix: str) -> str:
-        """A new file for the argument of that name."""
-        if self._folder is None:
-            self._folder = tempfile.TemporaryDirectory(prefix="posewise")
-        path = os.path.join(self._folder.name, name + suffix)
-        self._names[path] = name
-        return path
-
-    def table(self, value: Table | None, name: str) -> str:
-        """A table, or the file that it is in already; "" for None."""
-        if value is None:
-            return ""
-        if isinstance(value, (str, os.PathLike)):
-            return os.fspath(value)
-        if not isinstance(value, pd.DataFrame):
-            raise InputError(
-                f"`{name}` is a {type(value).__name__}; must be a DataFrame with the columns of the "
-                "CSV file, or the path of one"
-            )
-        path = self.path(name, ".csv")
-        as_written(value).to_csv(path, index=False)
-        return path
-
-    def result(self, value: Shown | None, name: str) -> str:
-        """The document of a plan or an estimate; "" for None."""
-        if value is None:
-            return ""
-        path = self.path(name, ".json")
-        Path(path).write_text(json.dumps(value.document), encoding="utf-8")
-        return path
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        if self._folder is not None:
-            self._folder.cleanup()
-        if isinstance(error, _posewise.InputError):
-            raise InputError(self.spoken(str(error))) from None
-
-    def spoken(self, message: str) -> str:
-        for path, name in self._names.items():
-            message = message.replace(path, name)
-        return with_keywords(message)
-
-    def warn(self, sentences: Iterable[str]) -> list[str]:
-        """Gives the library's warnings as Python's; returns them."""
-        spoken = [self.spoken(sentence) for sentence in sentences]
-        level, frame = 2, sys._getframe(1)  # up to the caller of the package
-        while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
-            level, frame = level + 1, frame.f_back
-        for sentence in spoken:
-            warnings.warn(sentence, Doubt, stacklevel=level)
-        return spoken
+def spoken(error: Exception, names: Mapping[str, str] | None = None) -> NoReturn:
+    """Raises what a user of Python can do something about, in place of the library's error."""
+    message = str(error)
+    for path, name in (names or {}).items():
+        message = message.replace(path, name)
+    raise InputError(with_keywords(message)) from None
 
 
-def as_written(table: pd.DataFrame) -> pd.DataFrame:
-    """The table with its configurations' names as first column, as CSV files have them."""
-    if "config" in table.columns:
-        return table
-    if {"name", "x", "y", "z"} <= {str(column).split("_")[0] for column in table.columns}:
-        return table  # a list of points
-    if table.index.name == "config":
-        return table.reset_index()
-    named = table.copy()
-    named.insert(0, "config", table.index.astype(str))
-    return named
+def warn(sentences: Iterable[str]) -> None:
+    """Gives sentences as warnings of the line that called the package."""
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
+        level, frame = level + 1, frame.f_back
+    for sentence in sentences:
+        warnings.warn(sentence, Doubt, stacklevel=level)
 
 
-def read_table(path: str) -> pd.DataFrame:
-    return pd.read_csv(path, dtype={"config": str}, float_precision="round_trip")
+# ---- Arguments ----
 
 
-def names(ids: Iterable[Any]) -> list[str]:
-    """Ids of configurations as files have them."""
-    return [str(one) for one in ids]
+def check_kind(value: Any, kind: type[Any], name: str, *, is_needed: bool = False) -> None:
+    """Raises InputError for a value that is no such object of the package; None may pass."""
+    if isinstance(value, kind) or (value is None and not is_needed):
+        return
+    raise InputError(f"`{name}` is a {type(value).__name__}; must be a posewise.{kind.__name__}")
+
+
+def check_number(
+    name: str, value: Any, least: float, most: float = np.inf, *, whole: bool = False
+) -> None:
+    """Raises InputError for what is no number from ``least`` to ``most``; None passes."""
+    if value is None:
+        return
+    kinds = (int, np.integer) if whole else (int, float, np.integer, np.floating)
+    if not isinstance(value, kinds) or isinstance(value, bool) or not least <= value <= most:
+        kind = "a whole number" if whole else "a number"
+        limit = f" to {most:g}" if most < np.inf else ""
+        raise InputError(f"`{name}` is {shortened(value)}; must be {kind} from {least:g}{limit}")
+
+
+def shortened(value: Any) -> str:
+    """The value in an error message: one line, however long it is."""
+    try:
+        words = repr(value)
+    except Exception:  # of somebody else's class
+        words = f"a {type(value).__name__}"
+    words = " ".join(words.encode("utf-8", "backslashreplace").decode().split())
+    return words if len(words) <= 60 else words[:57] + "..."
+
+
+def numbers(value: Any, name: str, rule: str) -> Array:
+    """An array of real numbers; ``rule`` says in an error what it must be."""
+    try:
+        masked = isinstance(value, np.ma.MaskedArray) and bool(np.any(value.mask))
+        array = np.asarray(value)
+    except Exception:  # of ragged or endless lists, or somebody else's class
+        array, masked = np.array(None), False
+    if masked:
+        raise InputError(f"`{name}` has numbers that are masked; must have them all")
+    if array.dtype.kind not in "fiub":
+        raise InputError(f"`{name}` must be {rule}")
+    return array.astype(float, copy=False)
+
+
+def names(name: str, ids: Iterable[Any] | None) -> list[str] | None:
+    """A list of names, as files have them; whole numbers may be names. None if empty."""
+    if ids is None:
+        return None
+    if isinstance(ids, (str, bytes)):
+        raise InputError(f"`{name}` is {shortened(ids)}; must be a list of names: [{shortened(ids)}]")
+    try:
+        listed = list(ids)
+    except TypeError:
+        raise InputError(f"`{name}` is {shortened(ids)}; must be a list of names") from None
+    for one in listed:
+        is_name = isinstance(one, (str, int, np.integer)) and not isinstance(one, bool)
+        if not is_name or one == "":
+            raise InputError(f"`{name}` has {shortened(one)}; must be names or whole numbers")
+    return [str(one) for one in listed] or None
+
+
+def check_text(text: str, name: str) -> str:
+    """The text. Raises InputError if no file can have it."""
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise InputError(f"`{name}` has characters that no file can have (lone surrogates)") from None
+    return text
 
 
 def as_json(function: str, keywords: Mapping[str, Any]) -> str:
     """The keywords that are stated, for the library to read."""
-    stated = {key: _plain(value) for key, value in keywords.items() if value is not None}
-    for key, value in stated.items():
+    stated = {}
+    for key, value in keywords.items():
+        if value is None:
+            continue
         try:
-            json.dumps(value, allow_nan=False)
-        except (TypeError, ValueError):
-            raise InputError(f"{function}(): {key} is {value!r}, which is no number or text") from None
+            stated[key] = _plain(value)
+            json.dumps(stated[key], allow_nan=False, ensure_ascii=False).encode()
+        except (TypeError, ValueError, RecursionError):
+            raise InputError(
+                f"{function}(): {key} is {shortened(value)}, which is no number or text"
+            ) from None
     return json.dumps(stated)
 
 
@@ -179,21 +187,29 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def check_number(name: str, value: Any, least: float, *, whole: bool = False) -> None:
-    """Raises InputError for what is no number from ``least`` on; None passes."""
-    if value is None:
-        return
-    kinds = (int, np.integer) if whole else (int, float, np.integer, np.floating)
-    if not isinstance(value, kinds) or isinstance(value, bool) or not value >= least:
-        kind = "a whole number" if whole else "a number"
-        raise InputError(f"`{name}` is {value!r}; must be {kind} from {least:g}")
+# ---- Long calls ----
+
+most_threads = 100_000
 
 
 def call_options(threads: int | None, time: float | None, progress: Progress) -> Any:
-    check_number("threads", threads, 1, whole=True)
-    check_number("time", time, 1e-3)
-    shown = _show_progress() if progress is True else progress or None
+    check_number("threads", threads, 1, most_threads, whole=True)
+    check_number("time", time, 1e-3, 1e9)
+    if not (progress is None or isinstance(progress, (bool, np.bool_)) or callable(progress)):
+        raise InputError(
+            f"`progress` is {shortened(progress)}; must be True, False or a function of two "
+            "numbers, done and total"
+        )
+    shown = progress if callable(progress) else _show_progress() if progress else None
     return _posewise.CallOptions(threads=threads, time=time or 0.0, progress=shown)
+
+
+def made(result: T, doubts: Sequence[str], options: Any) -> T:
+    """What a call returns: warns of its doubts, or raises Interrupted with it after Ctrl-C."""
+    if options.is_interrupted:
+        raise Interrupted(result)
+    warn(doubts)
+    return result
 
 
 def _show_progress() -> Callable[[int, int], None]:

@@ -16,20 +16,18 @@ class CallOptions:
     def __init__(
         self, threads: int | None, time: float, progress: Callable[[int, int], object] | None
     ) -> None: ...
+    @property
+    def is_interrupted(self) -> bool: ...
 
 class PlainBlocks:
     def __init__(
-        self, candidates: Array, rows: int, held: Array, held_count: int, test_poses: Array
-    ) -> None: ...
-
-class CandidateKind:
-    measurements: CandidateKind
-    configurations: CandidateKind
-    random: CandidateKind
-
-class ChoiceTables:
-    def __init__(
-        self, kind: CandidateKind, candidates: str, random_count: int, held: str, test_poses: str
+        self,
+        candidates: Array,
+        rows: int,
+        held: Array,
+        held_count: int,
+        prior: Array,
+        test_poses: Array,
     ) -> None: ...
 
 class Campaign:
@@ -57,72 +55,28 @@ class Campaign:
     def flange(self, q: Array) -> Array: ...
     def inspect(self, options: CallOptions) -> Result: ...
 
-def choose_plain(
-    blocks: PlainBlocks, keywords: str, groups: Sequence[int], options: CallOptions
-) -> Result: ...
-def verify_plain(
-    plan: str, blocks: PlainBlocks, groups: Sequence[int], options: CallOptions
-) -> Result: ...
-def choose(
-    campaign: Campaign,
-    tables: ChoiceTables,
-    keywords: str,
-    prior: bool | None,
-    estimate: str,
-    force: bool,
-    groups: Sequence[int],
-    options: CallOptions,
-) -> Result: ...
-def verify(
-    plan: str,
-    campaign: Campaign,
-    tables: ChoiceTables,
-    estimate: str,
-    groups: Sequence[int],
-    options: CallOptions,
-) -> Result: ...
+def choose_plain(blocks: PlainBlocks, keywords: str, options: CallOptions) -> Result: ...
+def verify_plain(plan: str, blocks: PlainBlocks, groups: Sequence[int]) -> Result: ...
+def choose(campaign: Campaign, keywords: str, options: CallOptions) -> Result: ...
+def verify(plan: str, campaign: Campaign, groups: Sequence[int]) -> Result: ...
 def rate_blocks(stacked: Array, poses: int, blocks: PlainBlocks) -> list[tuple[str, float]]: ...
-def plan(
-    campaign: Campaign,
-    keywords: str,
-    prior: bool | None,
-    estimate: str,
-    force: bool,
-    held: str,
-    workspace: str,
-    repaired: str,
-    options: CallOptions,
-) -> Result: ...
+def plan(campaign: Campaign, keywords: str, options: CallOptions) -> Result: ...
+def check_plan(path: str, campaign: Campaign) -> None: ...
 def write_plan(
-    document: str, path: str, campaign: Campaign | None, csv: str, targets: str
+    document: str,
+    path: str,
+    campaign: Campaign | None,
+    csv: str,
+    targets: str,
+    warnings: Sequence[str],
 ) -> None: ...
-def calibrate(
-    campaign: Campaign,
-    measurements: str,
-    keywords: str,
-    plan: str,
-    points_unit: str,
-    validate: str,
-    estimate: str,
-    force: bool,
-    options: CallOptions,
-) -> Result: ...
+def calibrate(campaign: Campaign, keywords: str, options: CallOptions) -> Result: ...
+def check_estimate(path: str, campaign: Campaign) -> None: ...
 def predict(campaign: Campaign, estimate: str, q: Array) -> list[tuple[bool, Array]]: ...
-def study(
-    campaign: Campaign,
-    measurements: str,
-    keywords: str,
-    exclude: Sequence[str],
-    prior: bool | None,
-    force: bool,
-    options: CallOptions,
-) -> Result: ...
+def study(campaign: Campaign, keywords: str, options: CallOptions) -> Result: ...
 def study_plain(
     blocks: PlainBlocks,
     keywords: str,
     subsets: Sequence[tuple[str, Sequence[int]]],
     options: CallOptions,
-) -> Result: ...
-def simulate_study(
-    campaign: Campaign, keywords: str, prior: bool | None, options: CallOptions
 ) -> Result: ...

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -14,8 +14,10 @@ import numpy as np
 import pandas as pd
 
 from . import _posewise
-from ._calls import Files, Progress, Table, as_json, call_options, names
-from ._results import Result, read_result, symmetric
+from ._calls import InputError, Progress, as_json, call_options, check_kind, made, names
+from ._files import FilePath, Files, Input, Table, given, table, write_file
+from ._keywords import check_keywords
+from ._results import Result, read_result, result_input, symmetric, target_of
 from .campaign import Campaign, Configurations
 
 if TYPE_CHECKING:
@@ -30,11 +32,16 @@ class Estimate(Result):
     json: str = field(repr=False)  #: the estimate file, as ``posewise calibrate --out`` writes it
     text: str = ""  #: what the command prints
     doubts: list[str] = field(default_factory=list)  #: what should be looked at first
+    _inputs: dict[str, Input] = field(default_factory=dict, repr=False, compare=False)
+    _options: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
     @classmethod
-    def read(cls, path: str | os.PathLike[str], campaign: Campaign) -> Estimate:
-        """An estimate from its file."""
+    def read(cls, path: FilePath, campaign: Campaign) -> Estimate:
+        """An estimate of that campaign's robot and instrument from its file."""
+        check_kind(campaign, Campaign, "campaign", is_needed=True)
         text = read_result(path, "estimate")
+        with Files():
+            _posewise.check_estimate(os.fspath(path), campaign._core)
         return cls(campaign, text, "", list(json.loads(text).get("warnings", [])))
 
     @cached_property
@@ -93,7 +100,8 @@ class Estimate(Result):
 
     @property
     def held_out(self) -> pd.Series | None:
-        """Errors of means at poses held out; None if none were."""
+        """Errors of means at poses held out in turn, over all folds; None if none were: all RMS but
+        the maxima, mm (mrad)."""
         accuracy = self.accuracy
         return accuracy.loc["held_out_means"] if "held_out_means" in accuracy.index else None
 
@@ -104,27 +112,43 @@ class Estimate(Result):
         what 95 % keep; over all of them in ``.attrs``.
         """
         with Files() as files:
-            tables = _posewise.predict(
-                self.campaign._core, files.result(self, "estimate"), self.campaign.configurations(q)
-            )
+            estimate = files.text("estimate", self.json)
+            configurations = self.campaign.configurations(q)
+            if len(configurations) == 0:
+                raise InputError("`q` has no configurations; must have some to predict")
+            tables = _posewise.predict(self.campaign._core, estimate, configurations)
         index = q.index if isinstance(q, pd.DataFrame) else None
         frames: list[pd.DataFrame] = []
         overall: dict[str, float] = {}
-        for is_angle, table in tables:
+        for is_angle, found in tables:
             unit = "mrad" if is_angle else "mm"
             columns = [f"{part}_{unit}" for part in ("parameters", "left_over", "noise", "total", "p95")]
-            frames.append(pd.DataFrame(1000 * table[:-1], index=index, columns=columns))
-            overall.update(zip(columns, (1000 * table[-1]).tolist()))
+            frames.append(pd.DataFrame(1000 * found[:-1], index=index, columns=columns))
+            overall.update(zip(columns, (1000 * found[-1]).tolist()))
         frame = pd.concat(frames, axis=1)
         frame.attrs.update(overall)
         return frame
 
-    def write(self, path: str | os.PathLike[str]) -> None:
-        """Writes the estimate file, all or nothing."""
-        target = Path(path)
-        part = target.with_name(target.name + ".part")
-        part.write_text(self.json, encoding="utf-8")
-        part.replace(target)
+    def write(self, path: FilePath) -> None:
+        """Writes the estimate file, all or nothing.
+
+        It names the files that it was made from. What was given in memory is written beside it
+        first: estimate.measurements.csv, estimate.campaign.yaml for a campaign that is no file.
+        """
+        target = target_of(path)
+        if not self._inputs:  # it was read from a file
+            return write_file(target, self.json.encode())
+        beside = {
+            name: _seen_from(target, one.beside(target, name)) for name, one in self._inputs.items()
+        }
+        document = dict(self.document)
+        document["measurements"] = beside["measurements"]
+        document["made_from"] = {
+            **document["made_from"],
+            "campaign_file": _seen_from(target, self.campaign.beside(target)),
+            "options": _as_options({**self._options, **beside}),
+        }
+        write_file(target, json.dumps(document, indent=1, ensure_ascii=False).encode())
 
     def plot(self, ax: Any = None) -> Any:
         """Draws nominal and calibrated error of held-out poses; needs matplotlib."""
@@ -136,6 +160,23 @@ class Estimate(Result):
         ax.set_ylabel("RMS distance / mm")
         ax.set_yscale("log")
         return ax
+
+
+def _seen_from(target: Path, path: str) -> str:
+    return path if os.path.isabs(path) else os.path.relpath(path, target.parent)
+
+
+def _as_options(keywords: Mapping[str, Any]) -> dict[str, list[str]]:
+    """Keywords as the options of the program that do the same."""
+    others = {"estimate": "from"}
+    stated: dict[str, list[str]] = {}
+    for key, value in keywords.items():
+        if key == "measurements" or value is None or (value is False and key != "prior"):
+            continue
+        option = "no-prior" if value is False else others.get(key, key.replace("_", "-"))
+        values = value if isinstance(value, list) else ["true" if isinstance(value, bool) else value]
+        stated["--" + option] = [str(one) for one in values]
+    return stated
 
 
 def _values(document: dict[str, Any]) -> dict[str, tuple[float, str]]:
@@ -205,15 +246,28 @@ def calibrate(
     ``measurements`` is a DataFrame with the columns of the CSV file (config, q1_deg, ..., p1_x_mm,
     ...; without config the index names the configurations), or the path of a file. With ``plan`` it
     may be an instrument's list of points (name, x, y, z), and only the plan's poses calibrate;
-    others judge. ``validate`` is measured elsewhere, only to judge. Options are those of
-    ``posewise calibrate``. What is doubtful is warned of as :class:`posewise.Doubt`. What must not
-    be used raises InputError; ``force=True`` takes it all the same.
+    others judge. ``validate`` is measured elsewhere, only to judge. ``exclude`` are ids to leave out
+    ([7, "9-12"]). By default every configuration is held out in turn up to 100 of them, else 10
+    ``folds``; 0 holds none out. Other options, with their defaults, are those of ``posewise
+    calibrate --help``.
+
+    What is doubtful is warned of as :class:`posewise.Doubt`. What must not be used raises InputError;
+    ``force=True`` takes it all the same. ``time`` ends it after that many seconds with what there is
+    by then, which a Doubt says; Ctrl-C raises :class:`posewise.Interrupted` with that as ``result``,
+    or KeyboardInterrupt where there is nothing yet. ``progress`` is called as ``progress(done,
+    total)``, see :func:`posewise.plan`.
     """
+    check_kind(campaign, Campaign, "campaign", is_needed=True)
+    check_kind(estimate, Estimate, "estimate")
+    _check_plan(plan)
+    if measurements is None:
+        raise InputError("calibrate(): needs `measurements`")
     keywords = {
-        "refit": refit,
+        "points_unit": points_unit,
+        "refit": names("refit", refit),
         "limit_mm": limit_mm,
-        "exclude": names(exclude),
-        "free": free,
+        "exclude": names("exclude", exclude),
+        "free": names("free", free),
         "prior": prior,
         "sizes": sizes,
         "method": method,
@@ -222,19 +276,27 @@ def calibrate(
         "folds": folds,
         "model_selection": model_selection,
         "as_prior": as_prior,
-        "only": only,
-        "moved": moved,
+        "only": names("only", only),
+        "moved": names("moved", moved),
+        "force": force,
     }
+    inputs = given({
+        "measurements": table(measurements, "measurements"),
+        "plan": result_input(plan),
+        "validate": table(validate, "validate"),
+        "estimate": result_input(estimate),
+    })
+    check_keywords("calibrate", {**keywords, **inputs}, "a campaign")
+    options = call_options(threads, time, progress)
     with Files() as files:
-        result = _posewise.calibrate(
-            campaign._core,
-            files.table(measurements, "measurements"),
-            as_json("calibrate", keywords),
-            files.result(plan, "plan"),
-            points_unit or "",
-            files.table(validate, "validate"),
-            files.result(estimate, "estimate"),
-            force,
-            call_options(threads, time, progress),
-        )
-        return Estimate(campaign, result[0], result[1], files.warn(result[2]))
+        stated = as_json("calibrate", {**keywords, **files.open(inputs)})
+        result = _posewise.calibrate(campaign._core, stated, options)
+        doubts = files.spoken(result[2])
+    found = Estimate(campaign, result[0], result[1], doubts, inputs, keywords)
+    return made(found, doubts, options)
+
+
+def _check_plan(plan: Plan | None) -> None:
+    from .planning import Plan
+
+    check_kind(plan, Plan, "plan")

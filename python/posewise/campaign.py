@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+import zlib
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Union
@@ -15,9 +16,19 @@ import numpy.typing as npt
 import pandas as pd
 
 from . import _posewise
-from ._calls import Files, InputError, call_options, check_number
+from ._calls import (
+    Array,
+    InputError,
+    call_options,
+    check_number,
+    check_text,
+    made,
+    numbers,
+    shortened,
+    warn,
+)
+from ._files import Files, check_path, read_text, write_file
 
-Array = npt.NDArray[np.float64]
 Configurations = Union[pd.DataFrame, npt.ArrayLike]
 
 # Of columns of tables: how many of the library's units one is.
@@ -44,14 +55,18 @@ class Sensor:
 
     def _parts(self) -> tuple[Any, ...]:
         """As the compiled half takes them."""
-        names, is_angle = _split_units(self.names, "names")
-        unknown, unknown_is_angle = _split_units(list(self.unknowns), "unknowns")
-        of_targets = 3 * sum(one is None for one in self.targets)
+        if not callable(self.predict):
+            raise InputError("`sensor.predict` must be a function of a frame and unknowns")
         try:
+            names, is_angle = _split_units(self.names, "names")
+            unknown, unknown_is_angle = _split_units(list(self.unknowns), "unknowns")
+            of_targets = 3 * sum(one is None for one in self.targets)
             sigmas = np.broadcast_to(np.asarray(self.sigma, dtype=float), (len(names),))
             values = np.array(list(self.unknowns.values()), dtype=float)
             places = [None if one is None else np.asarray(one, float) for one in self.targets]
-        except (TypeError, ValueError):
+        except InputError:
+            raise
+        except (AttributeError, TypeError, ValueError, RecursionError):
             raise InputError("`sensor` must state numbers: sigma, targets, unknowns") from None
         if any(one is not None and one.shape != (3,) for one in places):
             raise InputError("`sensor.targets` must be points (x, y, z) in m, or None")
@@ -63,10 +78,34 @@ class Sensor:
 _any_sensor = {"kind": "points", "sigma_mm": 1, "targets": {"count": 1}}
 
 
+def _as_file(keys: Mapping[str, Any]) -> str:
+    """The text of a campaign file with these keys."""
+    try:
+        return json.dumps(_section(keys, "keys"), allow_nan=False, default=_plain)
+    except (TypeError, ValueError, RecursionError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"keys: {error}; must be numbers, texts, lists and dicts") from None
+
+
+def _plain(value: Any) -> Any:
+    """What JSON has for a value of NumPy."""
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    raise TypeError(f"has a {type(value).__name__}")
+
+
+def _section(keys: Any, name: str) -> dict[str, Any]:
+    """The keys of a section of a campaign file."""
+    if keys is not None and not isinstance(keys, Mapping):
+        raise InputError(f"`{name}` is {shortened(keys)}; must be a dict of keys of a campaign file")
+    return dict(keys or {})
+
+
 def _split_units(columns: Sequence[str], what: str) -> tuple[list[str], list[bool]]:
     names, are_angles = [], []
     for column in columns:
-        name, _, unit = str(column).rpartition("_")
+        name, _, unit = check_text(str(column), f"sensor.{what}").rpartition("_")
         if not name or unit not in ("m", "rad"):
             raise InputError(f"`sensor.{what}` has {column!r}; must end in _m or _rad")
         names.append(name)
@@ -90,40 +129,32 @@ class Campaign:
 
     def __init__(self, content: str, path: str = "campaign") -> None:
         """Reads a campaign file's text, whose paths are relative to the folder of ``path``."""
+        if not isinstance(content, str) or not isinstance(path, str):
+            raise InputError("Campaign(): takes the text of a campaign file; from_yaml() takes its path")
+        check_text(content, "content"), check_path(path, "path")
         self._urdf: tuple[str, Mapping[str, Any]] | None = None
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._sensor: tuple[Campaign, Sensor] | None = None
-        with Files() as files:
+        with Files():
             self._core = _posewise.Campaign(content, path)
-            files.warn(self._core.warnings)
+        warn(self._core.warnings)
 
     @classmethod
     def from_yaml(cls, path: str | os.PathLike[str]) -> Campaign:
         """Reads a campaign file (posewise help the-file explains its keys)."""
-        try:
-            content = Path(path).read_text(encoding="utf-8")
-        except OSError as error:
-            raise InputError(f"{os.fspath(path)}: cannot be read: {error.strerror}") from None
-        except UnicodeDecodeError:
-            raise InputError(f"{os.fspath(path)}: is no text; must be a campaign file") from None
-        return cls(content, os.fspath(path))
+        return cls(read_text(path, "a campaign file"), os.fspath(path))
 
     @classmethod
     def from_dict(cls, keys: Mapping[str, Any]) -> Campaign:
         """A campaign by the keys of a campaign file."""
-        try:
-            return cls(json.dumps(keys, allow_nan=False))
-        except (TypeError, ValueError) as error:
-            if isinstance(error, InputError):
-                raise
-            raise InputError(f"keys: {error}; must be numbers, texts, lists and dicts") from None
+        return cls(_as_file(keys))
 
     @classmethod
     def from_urdf(
         cls,
         urdf: str | os.PathLike[str],
         *,
-        base: str | None = None,
+        base: str | Mapping[str, Any] | None = None,
         tip: str | None = None,
         sensor: Mapping[str, Any] | Sensor,
         name: str = "robot",
@@ -134,34 +165,41 @@ class Campaign:
 
         ``base`` and ``tip`` are links, ``sensor`` (or a :class:`Sensor`) and further keywords keys of
         a campaign file (``model_error_mm=0.2``), ``robot`` those of its section robot
-        (``{"errors": "geometric"}``).
+        (``{"errors": "geometric"}``). A dict as ``base`` is that key of a campaign file, where the
+        robot stands before the instrument; its link is then ``robot={"base_link": ...}``.
         """
         if isinstance(sensor, Sensor):
             return cls.from_urdf(
                 urdf, base=base, tip=tip, sensor=_any_sensor, name=name, robot=robot, **keys
             ).with_sensor(sensor)
-        stated = dict(robot or {})
-        if base is not None:
+        stated = _section(robot, "robot")
+        if isinstance(base, Mapping):
+            keys["base"] = base
+        elif base is not None:
             stated["base_link"] = base
         if tip is not None:
             stated["tip_link"] = tip
-        document = {"name": name, "robot": stated, "sensor": dict(sensor), **keys}
-        if not os.fspath(urdf).lstrip().startswith("<"):
-            stated["urdf"] = os.path.abspath(os.fspath(urdf))
-            return cls.from_dict(document)
-        return cls._from_urdf_text(os.fspath(urdf), document)
+        document = {"name": name, "robot": stated, "sensor": _section(sensor, "sensor"), **keys}
+        text = check_path(urdf, "urdf")
+        if text.lstrip().startswith("<"):
+            return cls._from_urdf_text(text, document)
+        stated["urdf"] = os.path.abspath(text)
+        return cls.from_dict(document)
 
     @classmethod
     def _from_urdf_text(cls, text: str, document: Mapping[str, Any]) -> Campaign:
+        # Beside the campaign, where the file is read again for other error models.
         folder = tempfile.TemporaryDirectory(prefix="posewise")
-        path = Path(folder.name) / "robot.urdf"
+        name = f"robot_{zlib.crc32(text.encode()):08x}.urdf"
+        path = Path(folder.name) / name
         path.write_text(text, encoding="utf-8")
-        with_path = {**document, "robot": {**document["robot"], "urdf": str(path)}}
+        with_path = {**document, "robot": {**document["robot"], "urdf": name}}
         try:
-            campaign = cls.from_dict(with_path)
+            campaign = cls(_as_file(with_path), str(path.with_name("campaign")))
         except InputError as error:
-            raise InputError(str(error).replace(str(path), "urdf")) from None
-        campaign._folder = folder  # the file is read again for other error models
+            message = str(error).replace(str(path), "urdf")
+            raise InputError(message.replace(str(path.with_name("campaign")), "campaign")) from None
+        campaign._folder = folder
         campaign._urdf = (text, document)
         return campaign
 
@@ -187,9 +225,12 @@ class Campaign:
                 {key: value for key, value in row.items() if np.ndim(value) or pd.notna(value)}
                 for row in rows.to_dict("records")
             ]
-        table = {"convention": convention, "rows": [dict(row) for row in rows]}
+        if isinstance(rows, (str, bytes, Mapping)) or not isinstance(rows, Iterable):
+            raise InputError(f"`rows` is {shortened(rows)}; must be a list of dicts, or a DataFrame")
+        table = {"convention": convention, "rows": [_section(row, "rows") for row in rows]}
+        stated = {"dh": table, **_section(robot, "robot")}
         return cls.from_dict(
-            {"name": name, "robot": {"dh": table, **(robot or {})}, "sensor": dict(sensor), **keys}
+            {"name": name, "robot": stated, "sensor": _section(sensor, "sensor"), **keys}
         )
 
     def with_sensor(self, sensor: Sensor) -> Campaign:
@@ -202,6 +243,36 @@ class Campaign:
             campaign._core = self._core.with_sensor(*sensor._parts())
         campaign._sensor = (self, sensor)
         return campaign
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Writes the campaign file, and beside it a URDF that was given as text.
+
+        A campaign whose instrument is a Python function cannot be written.
+        """
+        if self._sensor is not None:
+            raise InputError(
+                "the campaign's instrument is a Python function, which no file can state; write the "
+                "campaign that it was added to, or what is computed (DataFrame.to_csv, numpy.save)"
+            )
+        target = Path(check_path(path, "path"))
+        if self._urdf is not None and self._folder is not None:
+            [urdf] = Path(self._folder.name).glob("robot_*.urdf")
+            write_file(target.with_name(urdf.name), urdf.read_bytes())
+        with Files():  # what it refers to may not be found from there
+            _posewise.Campaign(self._core.content, str(target))
+        write_file(target, self._core.content.encode())
+
+    def beside(self, path: Path) -> str:
+        """The path of its file, for the file at ``path`` to refer to; written beside it if need be."""
+        own = Path(self._core.path)
+        try:
+            if self._sensor is None and own.read_text(encoding="utf-8") == self._core.content:
+                return str(own)
+        except (OSError, ValueError):
+            pass
+        target = path.with_name(path.stem + ".campaign.yaml")
+        self.write(target)
+        return os.path.relpath(target)
 
     def __reduce__(self) -> tuple[Any, ...]:
         if self._sensor is not None:
@@ -239,14 +310,10 @@ class Campaign:
         columns = self._core.columns
         if isinstance(q, pd.DataFrame):
             return np.column_stack([_joint_column(q, column) for column in columns])
-        try:
-            array = np.asarray(q, dtype=float)
-        except (TypeError, ValueError):
-            raise InputError("`q` must be numbers, in rad and m") from None
-        array = np.atleast_2d(array)
+        array = np.atleast_2d(numbers(q, "q", "numbers, in rad and m"))
         if array.ndim != 2 or array.shape[1] != len(columns):
             raise InputError(
-                f"`q` has the shape {np.shape(q)}; must be (poses, {len(columns)}), for "
+                f"`q` has the shape {np.shape(array)}; must be (poses, {len(columns)}), for "
                 f"{', '.join(columns)}"
             )
         if not np.isfinite(array).all():
@@ -268,16 +335,14 @@ class Campaign:
         expected size, so without units: what :func:`posewise.select` takes. With ``scaled=False`` in
         m per m and m per rad.
         """
-        check_number("repeats", repeats, 1)
+        check_number("repeats", repeats, 1, 1e9)
+        if not isinstance(scaled, (bool, np.bool_)):
+            raise InputError(f"`scaled` is {shortened(scaled)}; must be True or False")
+        options = call_options(threads, None, None)
+        times = 1.0 if repeats is None else float(repeats)
         with Files():
-            return np.asarray(
-                self._core.jacobian(
-                    self.configurations(q),
-                    scaled,
-                    1.0 if repeats is None else float(repeats),
-                    call_options(threads, None, None)
-                )
-            )
+            J = self._core.jacobian(self.configurations(q), bool(scaled), times, options)
+        return made(np.asarray(J), [], options)
 
     def flange(self, q: Configurations) -> Array:
         """Frames of the nominal robot's flange in the instrument's frame, (poses, 4, 4), m."""
@@ -286,8 +351,10 @@ class Campaign:
 
     def inspect(self) -> str:
         """Which of the robot's errors can be found, as text."""
+        options = call_options(None, None, None)
         with Files():
-            return str(self._core.inspect(call_options(None, None, None))[1])
+            text = str(self._core.inspect(options)[1])
+        return made(text, [], options)
 
     def __repr__(self) -> str:
         return f"<Campaign {self.name!r}: {len(self.joints)} joints, {len(self.parameters)} parameters>"
@@ -304,9 +371,12 @@ def _joint_column(table: pd.DataFrame, column: str) -> Array:
             f"one of {', '.join(f'{name}_{other}' for other in alike)}"
         )
     try:
-        values = table[found[0]].to_numpy(dtype=float)
+        of_joint = table[found[0]]
+        if isinstance(of_joint, pd.DataFrame) or of_joint.dtype.kind not in "fiubO":
+            raise TypeError
+        values = of_joint.to_numpy(dtype=float)
     except (TypeError, ValueError):
-        raise InputError(f"`q` has other than numbers in {found[0]}") from None
+        raise InputError(f"`q` has other than numbers in {found[0]}, or several of it") from None
     if not np.isfinite(values).all():
         row = int(np.argmin(np.isfinite(values)))
         raise InputError(f"`q` is {values[row]} at row {row} of {found[0]}")

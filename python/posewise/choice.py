@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Union
@@ -14,18 +13,23 @@ import pandas as pd
 
 from . import _posewise
 from ._calls import (
-    Files,
+    Array,
     InputError,
     Progress,
-    Table,
     as_json,
     call_options,
+    check_kind,
     check_number,
+    made,
     names,
+    numbers,
+    shortened,
 )
-from ._results import Result, symmetric
+from ._files import Content, FilePath, Files, Input, Places, Table, array_file, given, places, table
+from ._keywords import check_keywords
+from ._results import Result, as_stated, result_input, symmetric, target_of, with_sources
 from .calibration import Estimate
-from .campaign import Array, Campaign
+from .campaign import Campaign
 
 Prior = Union[bool, npt.ArrayLike, None]
 
@@ -38,6 +42,7 @@ class Blocks:
     rows: int
     held: Array
     held_count: int
+    prior: Array
     test_poses: Array
 
     def core(self) -> Any:
@@ -46,8 +51,22 @@ class Blocks:
             rows=self.rows,
             held=self.held,
             held_count=self.held_count,
+            prior=self.prior,
             test_poses=self.test_poses,
         )
+
+    def inputs(self) -> dict[str, Input]:
+        """As files that the program reads. Rows of a prior follow those of poses held."""
+        found: dict[str, Input] = {"candidates": self._file(self.matrix)}
+        if len(self.held) + len(self.prior) > 0:
+            found["held"] = self._file(np.vstack([self.held, self.prior]))
+        if len(self.test_poses) > 0:
+            found["test_poses"] = self._file(self.test_poses)
+        return found
+
+    def _file(self, stacked: Array) -> Content:
+        padding = np.zeros((-len(stacked) % self.rows, stacked.shape[1]))
+        return array_file(np.vstack([stacked, padding]).reshape(-1, self.rows, stacked.shape[1]))
 
 
 @dataclass(frozen=True)
@@ -57,8 +76,9 @@ class Choice(Result):
     document: dict[str, Any] = field(repr=False)  #: as ``posewise select --json`` prints it
     text: str
     warnings: list[str] = field(repr=False)
-    _source: Any = field(repr=False, compare=False)
-    _groups: list[int] = field(repr=False, compare=False, default_factory=list)
+    _source: Blocks | Campaign = field(repr=False, compare=False)
+    _inputs: dict[str, Input] = field(default_factory=dict, repr=False, compare=False)
+    _groups: list[int] = field(default_factory=list, repr=False, compare=False)
 
     @property
     def ids(self) -> list[str]:
@@ -82,8 +102,8 @@ class Choice(Result):
 
     @property
     def value(self) -> float:
-        """Value of the criterion; larger is better."""
-        return float(self.document["value"])
+        """Value of the criterion, see :func:`select`; larger is better."""
+        return float(-np.inf if self.document["value"] is None else self.document["value"])
 
     @property
     def bound(self) -> float:
@@ -111,19 +131,53 @@ class Choice(Result):
         One row for each finding; all ``is_right`` unless something is not as stated.
         """
         with Files() as files:
-            plan = files.result(self, "plan")
-            options = call_options(None, None, None)
+            stated = with_sources(self.document, files.open(self._inputs))
+            plan = files.text("plan", json.dumps(stated))
             if isinstance(self._source, Blocks):
-                result = _posewise.verify_plain(plan, self._source.core(), self._groups, options)
+                result = _posewise.verify_plain(plan, self._source.core(), self._groups)
             else:
-                result = self._source.verify(files, plan, self._groups, options)
+                result = _posewise.verify(plan, self._source._core, self._groups)
         return findings(result[0])
 
-    def write(self, path: str | os.PathLike[str]) -> None:
-        """Writes the plan file, as ``posewise select --out``."""
+    def write(self, path: FilePath) -> None:
+        """Writes the plan file, as ``posewise select --out``; ``posewise verify`` checks it.
+
+        It names the files that the choice was made from. What was given in memory is written beside
+        it first: choice.candidates.npy for Jacobians, choice.held.csv for ``held`` and so on.
+        """
+        target = target_of(path)
+        inputs = dict(self._inputs)
+        paths: dict[str, str | None] = {}
+        if isinstance(self._source, Blocks):
+            if len(self._source.prior) > 0 and self.criterion == "o1":
+                raise InputError(
+                    "a prior that is an array is no pose, which o1 counts and no plan file can say; "
+                    "must be prior=True of scaled columns, or another criterion"
+                )
+            inputs = self._source.inputs()
+        else:
+            paths["campaign"] = self._source.beside(target)
+        if self._groups:
+            inputs["groups"] = self._groups_file()
+        paths.update({name: one.beside(target, name) for name, one in inputs.items()})
         with Files() as files:
-            document = files.result(self, "plan")
-            _posewise.write_plan(document, os.fspath(path), None, "", "")
+            document = files.text("plan", json.dumps(with_sources(self.document, paths)))
+            _posewise.write_plan(document, str(target), None, "", "", self.warnings)
+
+    def _groups_file(self) -> Content:
+        ids: list[str] = [str(i) for i in range(len(self._groups))]
+        candidates = self._inputs.get("candidates") or self._inputs.get("measurements")
+        if candidates is not None:
+            with Files() as files:
+                ids = _ids_in(candidates.open(files, "candidates"))
+        if len(ids) != len(self._groups):
+            raise InputError(
+                "`groups` cannot be written: the ids of the candidates are not known; must be of a "
+                "table with the column config"
+            )
+        return Content(
+            pd.DataFrame({"config": ids, "group": self._groups}).to_csv(index=False).encode(), ".csv"
+        )
 
     def __len__(self) -> int:
         return len(self.ids)
@@ -136,48 +190,19 @@ def findings(document: str) -> pd.DataFrame:
     return pd.DataFrame(verification["findings"]).set_index("name")
 
 
-@dataclass(frozen=True)
-class _Robot:
-    """Candidates of a robot."""
-
-    campaign: Campaign
-    kind: Any
-    candidates: Table | None
-    random: int
-    held: Table | None
-    test_poses: Table | None
-    estimate: Estimate | None
-
-    def tables(self, files: Files) -> Any:
-        return _posewise.ChoiceTables(
-            kind=getattr(_posewise.CandidateKind, self.kind),
-            candidates=files.table(self.candidates, self.kind),
-            random_count=self.random,
-            held=files.table(self.held, "held"),
-            test_poses=files.table(self.test_poses, "test_poses"),
-        )
-
-    def verify(self, files: Files, plan: str, groups: list[int], options: Any) -> Any:
-        return _posewise.verify(
-            plan,
-            self.campaign._core,
-            self.tables(files),
-            files.result(self.estimate, "estimate"),
-            groups,
-            options,
-        )
+def _ids_in(path: str) -> list[str]:
+    """Ids of the configurations in a table, in order."""
+    try:
+        frame = pd.read_csv(path, dtype=str, comment="#", sep=None, engine="python")
+        return list(dict.fromkeys(frame["config"]))
+    except (KeyError, ValueError, OSError):
+        return []
 
 
 def as_blocks(J: npt.ArrayLike, name: str, rows: int | None = None) -> tuple[Array, int]:
     """Stacked rows of Jacobians (poses, rows, parameters) or (poses, parameters), and rows of each."""
-    check_number("rows", rows, 1, whole=True)
-    try:
-        array = np.asarray(J)
-        if array.dtype.kind not in "fiub":
-            raise TypeError
-        array = array.astype(float, copy=False)
-    except (TypeError, ValueError):
-        raise InputError(f"`{name}` must be an array of numbers, (poses, rows, parameters)") from None
+    check_number("rows", rows, 1, 1e6, whole=True)
+    array = numbers(J, name, "an array of numbers, (poses, rows, parameters)")
     if array.ndim == 3:
         if rows is not None and rows != array.shape[1]:
             raise InputError(f"`rows` is {rows}, but `{name}` has {array.shape[1]} rows for each pose")
@@ -191,15 +216,16 @@ def as_blocks(J: npt.ArrayLike, name: str, rows: int | None = None) -> tuple[Arr
         )
     if rows < 1 or array.size == 0:
         raise InputError(f"`{name}` has the shape {array.shape}: no numbers; must have some")
-    return np.ascontiguousarray(array.reshape(-1, array.shape[-1])), rows
+    return np.ascontiguousarray(array.reshape(-1, array.shape[-1])), int(rows)
 
 
 def _prior_rows(prior: Prior, columns: int) -> Array:
     """Rows R with the prior's information R^T R, from deviations or a covariance."""
-    try:
-        spread = np.asarray(prior, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError("`prior` must be True, standard deviations or a covariance") from None
+    rule = (
+        f"True, {columns} standard deviations above 0, or a covariance ({columns}, {columns}), in the "
+        "square of the parameters' units"
+    )
+    spread = numbers(prior, "prior", rule)
     if spread.shape == (columns,) and np.isfinite(spread).all() and (spread > 0).all():
         return np.diag(1 / spread)
     if spread.shape == (columns, columns) and np.isfinite(spread).all():
@@ -207,10 +233,7 @@ def _prior_rows(prior: Prior, columns: int) -> Array:
             return np.linalg.inv(np.linalg.cholesky((spread + spread.T) / 2))
         except np.linalg.LinAlgError:
             raise InputError("`prior` is not positive definite; must be a covariance") from None
-    raise InputError(
-        f"`prior` has the shape {spread.shape}; must be True, {columns} standard deviations above "
-        f"0, or a covariance ({columns}, {columns})"
-    )
+    raise InputError(f"`prior` has the shape {spread.shape}; must be {rule}")
 
 
 def prior_flag(prior: Prior) -> bool | None:
@@ -230,32 +253,68 @@ def make_blocks(
 ) -> Blocks:
     matrix, rows = as_blocks(J, "J", rows)
     columns = matrix.shape[1]
-    known = np.zeros((0, columns))
+    known = prior_rows = tests = np.zeros((0, columns))
     held_count = 0
     if held is not None:
-        known, held_rows = as_blocks(held, "held", rows if np.ndim(held) == 2 else None)
-        held_count = len(known) // max(held_rows, 1)
+        known, held_rows = _beside(held, "held", rows)
+        held_count = len(known) // held_rows
     if prior is not None and prior_flag(prior) is None:
-        known = np.vstack([known, _prior_rows(prior, columns)])
-        held_count = 0  # rows of no pose
-    tests = np.zeros((0, columns))
+        prior_rows = _prior_rows(prior, columns)
     if test_poses is not None:
-        tests, _ = as_blocks(test_poses, "test_poses", rows if np.ndim(test_poses) == 2 else None)
+        tests, _ = _beside(test_poses, "test_poses", rows)
     for name, array in (("held", known), ("test_poses", tests)):
         if array.shape[1] != columns:
             raise InputError(f"`{name}` has {array.shape[1]} parameters; must have {columns}, as J")
-    return Blocks(matrix, rows, np.ascontiguousarray(known), held_count, tests)
+    return Blocks(matrix, rows, known, held_count, prior_rows, tests)
 
 
-def _labels(groups: Any) -> list[int]:
-    return [] if groups is None else [int(one) for one in pd.factorize(np.asarray(groups))[0]]
+def _beside(value: Any, name: str, rows: int) -> tuple[Array, int]:
+    """Jacobians beside others that have so many rows each."""
+    array = numbers(value, name, "an array of numbers, (poses, rows, parameters)")
+    stacked, own = as_blocks(array, name, rows if array.ndim == 2 else None)
+    if len(stacked) % own != 0:
+        raise InputError(f"`{name}` has {len(stacked)} rows; must have {own} for each pose")
+    return stacked, own
+
+
+def _labels(groups: Any) -> list[int] | None:
+    """A number for each candidate's group."""
+    if groups is None:
+        return None
+    rule = f"`groups` is {shortened(groups)}; must be a list with the group of each candidate"
+    if isinstance(groups, (str, bytes, dict, pd.DataFrame)):
+        raise InputError(rule)
+    try:
+        labels = pd.factorize(np.asarray(groups, dtype=object))[0]
+    except Exception:  # of values that cannot be compared
+        raise InputError(rule) from None
+    if (labels < 0).any():
+        raise InputError("`groups` has missing values; must have the group of each candidate")
+    return [int(one) for one in labels]
+
+
+def pose_indices(poses: Any, count: int | None, name: str) -> list[int]:
+    """Indices of poses, or where a mask of them is true."""
+    try:
+        taken = np.asarray(poses)
+    except Exception:  # of ragged lists, or somebody else's class
+        taken = np.array(None)
+    if taken.dtype.kind == "b" and taken.ndim == 1 and count in (None, len(taken)):
+        taken = np.flatnonzero(taken)
+    if taken.size == 0 and taken.ndim == 1:
+        taken = taken.astype(int)
+    is_within = taken.dtype.kind in "iu" and (count is None or ((taken >= 0) & (taken < count)).all())
+    if taken.ndim != 1 or not is_within:
+        limit = "" if count is None else f" from 0 to {count - 1}"
+        raise InputError(f"`{name}` is {shortened(poses)}; must be indices{limit}, or a mask")
+    return [int(one) for one in taken]
 
 
 def select(
     source: Campaign | npt.ArrayLike,
     k: int | None = None,
     *,
-    candidates: Table | None = None,
+    candidates: Places | None = None,
     measurements: Table | None = None,
     random: int | None = None,
     rows: int | None = None,
@@ -285,13 +344,27 @@ def select(
     """Chooses the ``k`` candidates that tell most about the parameters, with a proven bound.
 
     ``source`` is anybody's Jacobians, (poses, rows, parameters) or (poses, parameters) for one row
-    each, or a campaign with one of ``candidates`` (configurations), ``measurements`` (they register
-    base and targets, too) and ``random`` (as many configurations within the limits).
+    each, or a campaign with one of ``candidates`` (configurations, a table or an array (poses,
+    joints) in rad and m), ``measurements`` (they register base and targets, too) and ``random`` (as
+    many configurations within the limits).
 
-    ``criterion`` is o1 to o5, a, d, e, g or v. ``prior`` says what is known before: True (of scaled
-    columns: each parameter's size is its standard deviation), standard deviations, or a covariance.
-    ``held`` is measured already; its information counts. ``test_poses`` are predicted by g and v.
-    ``time`` ends the search after that many seconds, Ctrl-C at once, with the best choice so far.
+    ``criterion``, larger is better, of the information M = H + sum B^T B with p parameters and K
+    poses: d log det M, a 1 / trace M^-1, e the least eigenvalue, o1 det(M)^(1/2p) / sqrt(K), o2 the
+    least over the largest singular value, o3 the least, o4 its square over the largest, o5 1 / sum
+    of their inverses; g and v 1 / largest and mean variance predicted at ``test_poses``, by default
+    the candidates. K counts ``held``, but no prior (designs/README.md#criterion). The default is d
+    of Jacobians, else the campaign's, else v.
+
+    ``prior`` (H) says what is known before: True (of scaled columns: each parameter's size is its
+    standard deviation), standard deviations, or a covariance. ``held`` is measured already; its
+    information counts: Jacobians, of a campaign a table of measurements. ``exclude`` are ids not to
+    choose (of Jacobians their numbers), ``groups`` with ``per_group`` the group of each candidate and
+    how many of one may be chosen; ``repeat_limit`` (1) how often one may be. Other options, with
+    their defaults, are those of ``posewise select --help``.
+
+    ``time`` ends the search after that many seconds with the best choice so far; Ctrl-C raises
+    :class:`posewise.Interrupted`, whose ``result`` it is. ``progress`` is called as ``progress(done,
+    total)`` from another thread, one call at a time; what it raises ends the call.
 
     >>> import numpy as np
     >>> J = np.random.default_rng(1).normal(size=(50, 3, 6))
@@ -299,67 +372,70 @@ def select(
     >>> len(choice.poses), choice.is_optimal
     (5, True)
     """
-    keywords = {
+    check_kind(estimate, Estimate, "estimate")
+    is_robot = isinstance(source, Campaign)
+    labels = _labels(groups)
+    keywords: dict[str, Any] = {
         "poses": k,
         "criterion": criterion,
         "prior": prior_flag(prior),
-        "exclude": names(exclude),
+        "exclude": names("exclude", exclude),
+        "groups": labels,
         "per_group": per_group,
         "repeat_limit": repeat_limit,
         "least_distance_deg": least_distance_deg,
         "focus": focus,
         "repeats": repeats,
         "as_prior": as_prior,
-        "only": only,
-        "moved": moved,
+        "only": names("only", only),
+        "moved": names("moved", moved),
         "starts": starts,
         "proof": proof,
         "seed": seed,
+        "force": force,
+        "random": random,
     }
-    check_number("random", random, 1, whole=True)
+    unread = {"candidates": candidates, "measurements": measurements, "estimate": estimate, "rows": rows}
+    check_keywords("select", {**keywords, **unread}, "a campaign" if is_robot else "Jacobians")
+    if k is None:
+        raise InputError("select(): needs `k`, how many poses to choose")
     options = call_options(threads, time, progress)
-    labels = _labels(groups)
-    with Files() as files:
-        if isinstance(source, Campaign):
-            kinds = {"configurations": candidates, "measurements": measurements, "random": random}
-            stated = [kind for kind, value in kinds.items() if value is not None]
-            if len(stated) != 1 or rows is not None:
-                raise InputError(
-                    "select(): needs one of `candidates`, `measurements` and `random`, and no `rows`"
-                )
-            has_prior = campaign_prior(prior)
-            table = kinds[stated[0]] if stated[0] != "random" else None
-            robot = _Robot(source, stated[0], table, random or 0, held, test_poses, estimate)
-            result = _posewise.choose(
-                source._core,
-                robot.tables(files),
-                as_json("select", keywords),
-                has_prior,
-                files.result(estimate, "estimate"),
-                force,
-                labels,
-                options,
-            )
-            return _made(files, result, robot, labels)
-        of_robot = [candidates, measurements, random, estimate]
-        if any(one is not None for one in of_robot):
-            raise InputError(
-                "select(): `candidates`, `measurements`, `random` and `estimate` go with a campaign"
-            )
+    if not isinstance(source, Campaign):
         blocks = make_blocks(source, rows, prior, held, test_poses)
-        result = _posewise.choose_plain(
-            blocks.core(), as_json("select", keywords), labels, options
-        )
-        return _made(files, result, blocks, labels)
+        with Files() as files:
+            result = _posewise.choose_plain(blocks.core(), as_json("select", keywords), options)
+            return _made(files, result, blocks, {}, labels, options)
+    if candidates is None and measurements is None and random is None:
+        raise InputError("select(): needs one of `candidates`, `measurements` and `random`")
+    campaign_prior(prior)
+    inputs = given({
+        "candidates": places(candidates, "candidates", source._core.columns),
+        "measurements": table(measurements, "measurements"),
+        "held": table(held, "held"),
+        "test_poses": places(test_poses, "test_poses", source._core.columns),
+        "estimate": result_input(estimate),
+    })
+    with Files() as files:
+        stated = as_json("select", {**keywords, **files.open(inputs)})
+        result = _posewise.choose(source._core, stated, options)
+        return _made(files, result, source, inputs, labels, options)
 
 
-def _made(files: Files, result: Any, source: Any, labels: list[int]) -> Choice:
-    document = json.loads(result[0])
+def _made(
+    files: Files,
+    result: Any,
+    source: Blocks | Campaign,
+    inputs: dict[str, Input],
+    labels: list[int] | None,
+    options: Any,
+) -> Choice:
+    campaign = source._core.path if isinstance(source, Campaign) else None
+    document = with_sources(json.loads(result[0]), {**as_stated(inputs), "campaign": campaign})
     document.pop("plan_file", None)
-    sentences = list(result[2])
+    doubts = files.spoken(result[2])
     if document["search"]["stop_reason"] in ("interrupted", "time limit"):
-        sentences.append("stopped early; the choice is the best so far")
-    return Choice(document, result[1], files.warn(sentences), source, labels)
+        doubts.append("stopped early; the choice is the best so far")
+    return made(Choice(document, result[1], doubts, source, inputs, labels or []), doubts, options)
 
 
 def design(X: npt.ArrayLike, k: int, **keywords: Any) -> Choice:
@@ -372,23 +448,25 @@ def design(X: npt.ArrayLike, k: int, **keywords: Any) -> Choice:
     >>> design(X, 4).ids
     ['0', '2', '6', '8']
     """
-    if np.ndim(X) != 2:
-        raise InputError(f"`X` has the shape {np.shape(X)}; must be (candidates, parameters)")
-    return select(X, k, rows=1, **keywords)
+    matrix = numbers(X, "X", "an array of numbers, (candidates, parameters)")
+    if matrix.ndim != 2:
+        raise InputError(f"`X` has the shape {matrix.shape}; must be (candidates, parameters)")
+    return select(matrix, k, rows=1, **keywords)
 
 
 def indices(
     J: npt.ArrayLike,
-    poses: Sequence[int] | None = None,
+    poses: Sequence[int] | npt.ArrayLike | None = None,
     *,
     rows: int | None = None,
     prior: Prior = None,
     held: Any = None,
     test_poses: Any = None,
 ) -> pd.Series:
-    """Values of every criterion for some poses of Jacobians (by default all), by name.
+    """Values of every criterion for some poses of Jacobians, by name, see :func:`select`.
 
-    g and v predict ``test_poses``, by default all of J. Minus infinity: these poses do not identify
+    ``poses`` are indices or a mask (by default all). g and v predict ``test_poses``, by default all
+    of J. Minus infinity: these poses do not identify
     all parameters.
 
     >>> import numpy as np
@@ -396,17 +474,16 @@ def indices(
     0.333
     """
     blocks = make_blocks(J, rows, prior, held, test_poses)
+    if len(blocks.matrix) % blocks.rows != 0:
+        raise InputError(f"`rows` is {blocks.rows}; must divide the {len(blocks.matrix)} rows of J")
     count = len(blocks.matrix) // blocks.rows
-    taken = np.arange(count) if poses is None else np.asarray(poses)
-    if taken.dtype.kind not in "iu" or taken.ndim != 1 or ((taken < 0) | (taken >= count)).any():
-        raise InputError(f"`poses` must be indices from 0 to {count - 1}")
-    parts = [blocks.matrix.reshape(count, blocks.rows, -1)[taken].reshape(-1, blocks.matrix.shape[1])]
-    parts.append(blocks.held)
-    if prior_flag(prior):
-        parts.append(np.eye(blocks.matrix.shape[1]))
+    taken = list(range(count)) if poses is None else pose_indices(poses, count, "poses")
+    chosen = blocks.matrix.reshape(count, blocks.rows, -1)[taken].reshape(-1, blocks.matrix.shape[1])
+    sizes = np.eye(blocks.matrix.shape[1] if prior_flag(prior) else 0, blocks.matrix.shape[1])
     with Files():
         values = _posewise.rate_blocks(
-            np.vstack(parts), len(taken) + blocks.held_count, blocks.core()
+            np.vstack([chosen, blocks.held, blocks.prior, sizes]),
+            len(taken) + blocks.held_count,
+            blocks.core(),
         )
     return pd.Series(dict(values), name="value")
-

@@ -9,19 +9,22 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from . import _posewise
-from ._calls import (
-    Files,
-    InputError,
-    Progress,
-    Table,
-    as_json,
-    call_options,
-    read_table,
+from ._calls import InputError, Progress, as_json, call_options, check_kind, made, names
+from ._files import FilePath, Files, Input, Places, Table, check_path, given, places, read_table, table
+from ._keywords import check_keywords
+from ._results import (
+    Result,
+    as_stated,
+    read_result,
+    result_input,
+    sources_of,
+    target_of,
+    with_sources,
 )
-from ._results import Result, read_result
 from .calibration import Estimate
 from .campaign import Campaign
 from .choice import findings
@@ -38,41 +41,51 @@ class Plan(Result):
     document: dict[str, Any] = field(repr=False)  #: as ``posewise plan --json`` prints it
     text: str = ""
     warnings: list[str] = field(default_factory=list, repr=False)
-    _held: Table | None = field(default=None, repr=False, compare=False)
-    _workspace: Table | None = field(default=None, repr=False, compare=False)
-    _estimate: Estimate | None = field(default=None, repr=False, compare=False)
+    _inputs: dict[str, Input] = field(default_factory=dict, repr=False, compare=False)
 
     @classmethod
-    def read(cls, path: str | os.PathLike[str], campaign: Campaign) -> Plan:
-        """A plan from its file."""
-        return cls(campaign, json.loads(read_result(path, "plan")))
+    def read(cls, path: FilePath, campaign: Campaign) -> Plan:
+        """A plan of that campaign from its file; :meth:`verify` reads the files that it names."""
+        check_kind(campaign, Campaign, "campaign", is_needed=True)
+        document = json.loads(read_result(path, "plan"))
+        with Files():
+            _posewise.check_plan(os.fspath(path), campaign._core)
+        folder = os.path.dirname(os.path.abspath(path))
+        return cls(campaign, document, "", [], sources_of(document, folder))
 
     @cached_property
     def poses(self) -> pd.DataFrame:
         """The configurations as ``posewise plan --csv`` writes them, with verification poses and
         points to pass on the way."""
-        with Files() as files:
-            table = files.path("poses", ".csv")
-            self._write(files, files.path("out", ".json"), table, "")
-            return read_table(table)
+        return self._table("csv")
 
     @cached_property
     def targets(self) -> pd.DataFrame:
         """Where the instrument finds each target at each pose; for sensors of points."""
+        return self._table("targets")
+
+    def _table(self, kind: str) -> pd.DataFrame:
         with Files() as files:
-            table = files.path("targets", ".csv")
-            self._write(files, files.path("out", ".json"), "", table)
-            return read_table(table)
+            path = files.path(kind, ".csv")
+            self._write(files, files.path("out", ".json"), {}, **{kind: path})
+            return read_table(path)
 
     @property
     def predicted(self) -> pd.Series:
         """Position error to expect over the workspace once calibrated, mm."""
-        return pd.Series(self.document["accuracy"], name="predicted")
+        if "accuracy" in self.document:
+            return pd.Series(self.document["accuracy"], name="predicted", dtype=float)
+        stated = self.document.get("predicted") or {}  # of a file
+        return pd.Series(
+            {f"{name}_mm": 1e3 * stated.get(f"position_error_{name}_m", np.nan)
+             for name in ("rms", "p95")},
+            name="predicted",
+        )
 
     @property
     def value(self) -> float:
         """Value of the criterion; larger is better."""
-        return float(self.document["value"])
+        return float(-np.inf if self.document["value"] is None else self.document["value"])
 
     @property
     def other_counts(self) -> pd.DataFrame:
@@ -85,36 +98,31 @@ class Plan(Result):
     def verify(self) -> pd.DataFrame:
         """Checks every pose, the value and the predictions again; one row for each finding."""
         with Files() as files:
-            result = _posewise.verify(
-                files.result(self, "plan"),
-                self.campaign._core,
-                _posewise.ChoiceTables(
-                    kind=_posewise.CandidateKind.configurations,
-                    candidates="",
-                    random_count=0,
-                    held=files.table(self._held, "held"),
-                    test_poses=files.table(self._workspace, "workspace"),
-                ),
-                files.result(self._estimate, "estimate"),
-                [],
-                call_options(None, None, None),
-            )
+            stated = with_sources(self.document, files.open(self._inputs))
+            plan = files.text("plan", json.dumps(stated))
+            result = _posewise.verify(plan, self.campaign._core, [])
         return findings(result[0])
 
-    def write(
-        self,
-        path: str | os.PathLike[str],
-        *,
-        csv: str | os.PathLike[str] = "",
-        targets: str | os.PathLike[str] = "",
-    ) -> None:
-        """Writes the plan file, and its configurations and targets as tables; all or none."""
-        with Files() as files:
-            self._write(files, os.fspath(path), os.fspath(csv), os.fspath(targets))
+    def write(self, path: FilePath, *, csv: FilePath = "", targets: FilePath = "") -> None:
+        """Writes the plan file, and its configurations and targets as tables; all or none.
 
-    def _write(self, files: Files, path: str, csv: str, targets: str) -> None:
-        document = files.result(self, "plan")
-        _posewise.write_plan(document, path, self.campaign._core, csv, targets)
+        It names the files that the plan was made from. What was given in memory is written beside
+        it first: plan.held.csv for ``held``, plan.campaign.yaml for a campaign that is no file.
+        """
+        target = target_of(path)
+        paths = {name: one.beside(target, name) for name, one in self._inputs.items()}
+        paths["campaign"] = self.campaign.beside(target)
+        tables = {
+            name: check_path(one, name) for name, one in (("csv", csv), ("targets", targets)) if one
+        }
+        with Files() as files:
+            self._write(files, str(target), paths, **tables)
+
+    def _write(
+        self, files: Files, path: str, paths: dict[str, str], csv: str = "", targets: str = ""
+    ) -> None:
+        plan = files.text("plan", json.dumps(with_sources(self.document, paths)))
+        _posewise.write_plan(plan, path, self.campaign._core, csv, targets, self.warnings)
 
     def __len__(self) -> int:
         return len(self.document["poses"])
@@ -155,7 +163,7 @@ def plan(
     as_prior: bool | None = None,
     only: Sequence[str] | None = None,
     moved: Sequence[str] | None = None,
-    workspace: Table | None = None,
+    workspace: Places | None = None,
     workspace_poses: int | None = None,
     workspace_box_mm: Sequence[float] | None = None,
     workspace_target: int | None = None,
@@ -173,15 +181,23 @@ def plan(
     """Proposes ``poses`` configurations to measure, in the order to visit them.
 
     Instead of a number, ``target_mm`` asks for as few as keep the position error below it, and
-    ``minutes`` for as many as fit. ``held`` was measured already; ``repair`` with ``drop`` finds new
-    poses for those of a plan that could not be reached; ``estimate`` plans for the robot as an
-    earlier calibration found it. Options are those of ``posewise plan``. Ctrl-C and ``time`` end
-    the search with the best plan so far.
+    ``minutes`` for as many as fit. ``criterion`` is v by default (d with ``focus="robot"``), see
+    :func:`posewise.select`. ``held`` was measured already, a table as measurements; ``repair`` with
+    ``drop`` (ids) finds new poses for those of a plan that could not be reached; ``estimate`` plans
+    for the robot as an earlier calibration found it, ``as_prior`` as surely as it is known.
+    ``workspace`` is where the robot shall be accurate: a table of configurations or an array (poses,
+    joints) in rad and m; by default ``workspace_poses`` (500) are drawn. Other options, with their
+    defaults, are those of ``posewise plan --help``.
+
+    ``time`` ends the search after that many seconds with the best plan so far; Ctrl-C raises
+    :class:`posewise.Interrupted`, whose ``result`` is that plan. ``progress`` is called as
+    ``progress(done, total)`` from another thread, one call at a time; what it raises ends the call.
     """
-    if sum(one is not None for one in (poses, target_mm or minutes, repair)) == 0:
+    check_kind(campaign, Campaign, "campaign", is_needed=True)
+    check_kind(repair, Plan, "repair")
+    check_kind(estimate, Estimate, "estimate")
+    if poses is None and target_mm is None and minutes is None and repair is None:
         raise InputError("plan(): needs `poses`, `target_mm`, `minutes` or `repair`")
-    if poses is not None and (target_mm is not None or minutes is not None):
-        raise InputError("plan(): `poses` excludes `target_mm` and `minutes`")
     keywords = {
         "poses": poses,
         "target_mm": target_mm,
@@ -191,11 +207,12 @@ def plan(
         "poses_at_most": poses_at_most,
         "robust_to": robust_to,
         "criterion": criterion,
+        "prior": prior,
         "focus": focus,
-        "drop": drop,
+        "drop": names("drop", drop),
         "as_prior": as_prior,
-        "only": only,
-        "moved": moved,
+        "only": names("only", only),
+        "moved": names("moved", moved),
         "workspace_poses": workspace_poses,
         "workspace_box_mm": workspace_box_mm,
         "workspace_target": workspace_target,
@@ -205,21 +222,23 @@ def plan(
         "pool": pool,
         "starts": starts,
         "seed": seed,
+        "force": force,
     }
+    inputs = given({
+        "held": table(held, "held"),
+        "workspace": places(workspace, "workspace", campaign._core.columns),
+        "repair": result_input(repair),
+        "estimate": result_input(estimate),
+    })
+    check_keywords("plan", {**keywords, **inputs}, "a campaign")
+    options = call_options(threads, time, progress)
     with Files() as files:
-        result = _posewise.plan(
-            campaign._core,
-            as_json("plan", keywords),
-            prior,
-            files.result(estimate, "estimate"),
-            force,
-            files.table(held, "held"),
-            files.table(workspace, "workspace"),
-            files.result(repair, "repair"),
-            call_options(threads, time, progress),
-        )
-        document = json.loads(result[0])
-        document.pop("plan_file", None)
-        return Plan(
-            campaign, document, result[1], files.warn(result[2]), held, workspace, estimate
-        )
+        stated = as_json("plan", {**keywords, **files.open(inputs)})
+        result = _posewise.plan(campaign._core, stated, options)
+        doubts = files.spoken(result[2])
+    inputs.pop("repair", None)  # its poses are in the plan
+    document = with_sources(
+        json.loads(result[0]), {**as_stated(inputs), "campaign": campaign._core.path}
+    )
+    document.pop("plan_file", None)
+    return made(Plan(campaign, document, result[1], doubts, inputs), doubts, options)

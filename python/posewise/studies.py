@@ -13,10 +13,12 @@ import numpy.typing as npt
 import pandas as pd
 
 from . import _posewise
-from ._calls import Files, InputError, Progress, Table, as_json, call_options, names
+from ._calls import InputError, Progress, as_json, call_options, check_text, made, names, shortened
+from ._files import Files, Table, given, table
+from ._keywords import check_keywords
 from ._results import Result
 from .campaign import Campaign
-from .choice import Prior, campaign_prior, make_blocks, prior_flag
+from .choice import Prior, campaign_prior, make_blocks, pose_indices, prior_flag
 
 
 @dataclass(frozen=True)
@@ -34,23 +36,7 @@ class Study(Result):
     def table(self) -> pd.DataFrame:
         """A row for each number of poses and criterion: what is left at poses held out, mm; for
         Jacobians value, bound and efficiency of chosen, random and own subsets."""
-        if self._is_of_blocks:
-            return _blocks_table(self.document)
-        rows = []
-        for row in self.document["models"][0]["rows"]:
-            random = row["random"] or {}
-            shared = {
-                "poses": row["pose_count"],
-                **{f"random_{key}": value for key, value in random.items()},
-            }
-            for planned in row["planned"] or [{}]:
-                one = {key: value for key, value in planned.items() if key != "against_random"}
-                against = planned.get("against_random") or {}
-                one.update({f"against_random_{key}": value for key, value in against.items()})
-                rows.append({**shared, **one})
-        table = pd.DataFrame(rows)
-        first = [column for column in ("poses", "criterion") if column in table.columns]
-        return table[first + [column for column in table.columns if column not in first]]
+        return (_blocks_table if self._is_of_blocks else _campaign_table)(self.document)
 
     @property
     def _is_of_blocks(self) -> bool:
@@ -95,44 +81,63 @@ class Study(Result):
         return ax
 
 
-def _blocks_table(document: dict[str, Any]) -> pd.DataFrame:
+def _numeric(table: pd.DataFrame, *others: str) -> pd.DataFrame:
+    """With what is unknown as NaN in all but these columns."""
+    for column in table.columns.difference(others):
+        table[column] = pd.to_numeric(table[column])
+    return table
+
+
+def _campaign_table(document: Mapping[str, Any]) -> pd.DataFrame:
     rows = []
+    for row in document["models"][0]["rows"]:
+        shared = {f"random_{key}": value for key, value in row["random"].items()}
+        for planned in row["planned"]:
+            one = {key: value for key, value in planned.items() if key != "against_random"}
+            against = planned.get("against_random") or {}
+            for key in ("ratio", "lower", "upper", "verdict"):
+                one[f"against_random_{key}"] = against.get(key)
+            rows.append({"poses": row["pose_count"], "criterion": one.pop("criterion"), **shared, **one})
+    return _numeric(pd.DataFrame(rows), "criterion", "against_random_verdict")
+
+
+def _blocks_table(document: Mapping[str, Any]) -> pd.DataFrame:
+    rows = []
+    own = dict.fromkeys(subset["name"] for row in document["rows"] for subset in row["subsets"])
     for row in document["rows"]:
         one = {"poses": row["pose_count"], "criterion": row["criterion"]}
         one.update({key: row[key] for key in ("value", "bound", "efficiency")})
-        one.update({f"random_{key}": value for key, value in row["random"].items()})
-        for subset in row["subsets"]:
-            one[f"{subset['name']}_value"] = subset["value"]
-            one[f"{subset['name']}_efficiency"] = subset["efficiency"]
+        for key in ("subsets", "unidentified"):
+            one[f"random_{key}"] = row["random"][key]
+        for kind in ("value", "efficiency"):
+            for quantile in ("p5", "p50", "p95"):
+                one[f"random_{kind}_{quantile}"] = row["random"].get(f"{kind}_{quantile}")
+        found = {subset["name"]: subset for subset in row["subsets"]}
+        for name in own:
+            for kind in ("value", "efficiency"):
+                one[f"{name}_{kind}"] = found.get(name, {}).get(kind)
         one["chosen"] = row["poses"]
         rows.append(one)
-    return pd.DataFrame(rows)
+    return _numeric(pd.DataFrame(rows), "criterion", "chosen")
 
 
-def _counts(poses: Iterable[int] | int | None) -> list[int] | None:
-    if poses is None:
-        return None
-    return [int(poses)] if isinstance(poses, (int, np.integer)) else list(poses)
-
-
-def _study_blocks(
-    J: npt.ArrayLike,
-    rows: int | None,
-    prior: Prior,
-    held: Any,
-    test_poses: Any,
-    subsets: Mapping[str, Sequence[int]],
-    keywords: dict[str, Any],
-    options: Any,
-) -> Study:
+def _counts(poses: Iterable[int] | int | None) -> Any:
+    if poses is None or isinstance(poses, (str, bytes, Mapping)):
+        return poses
+    if isinstance(poses, (int, np.integer)):
+        return [poses]
     try:
-        own = [(str(name), [int(one) for one in poses]) for name, poses in subsets.items()]
-    except (AttributeError, TypeError, ValueError):
-        raise InputError("`subsets` must be indices by name: {'mine': [0, 7]}") from None
-    with Files() as files:
-        blocks = make_blocks(J, rows, prior, held, test_poses)
-        result = _posewise.study_plain(blocks.core(), as_json("study", keywords), own, options)
-        return Study(json.loads(result[0]), result[1], files.warn(result[2]))
+        return list(poses)
+    except TypeError:
+        raise InputError(f"`poses` is {shortened(poses)}; must be numbers of poses") from None
+
+
+def _own_subsets(subsets: Mapping[str, Any] | None) -> list[tuple[str, list[int]]]:
+    if subsets is None:
+        return []
+    if not isinstance(subsets, Mapping):
+        raise InputError("`subsets` must be indices by name: {'mine': [0, 7]}")
+    return [(check_text(str(name), "subsets"), pose_indices(poses, None, "subsets")) for name, poses in subsets.items()]
 
 
 def study(
@@ -169,67 +174,60 @@ def study(
 
     Of a campaign with measurements each subset calibrates and is judged on poses held out; without
     them robots are simulated (``trials``, ``precision``, ``pool``, ``test_poses``, ``repeats``,
-    ``refine``). Options are those of ``posewise study``.
+    ``refine``). ``criteria`` are the campaign's by default, else v; ``random`` subsets 100 for each
+    number of poses, one for each simulated robot. Options, with their defaults, are those of
+    ``posewise study --help``. ``time`` ends it after that many seconds with what is finished, which
+    a Doubt says, Ctrl-C by :class:`posewise.Interrupted` with that as ``result``; where nothing is,
+    that is an error, or KeyboardInterrupt. ``progress`` is called as ``progress(done, total)``, see
+    :func:`posewise.plan`.
 
     Of anybody's Jacobians (see :func:`posewise.select`, also for ``rows``, ``prior``, ``held``,
     ``test_poses``, ``exclude``, ``repeat_limit`` and ``proof``): value, proven bound and efficiency
-    of the best subset, of random ones and of your own ``subsets``, which are indices by name.
+    of the best subset, of random ones and of your own ``subsets``, which are indices (or masks) by
+    name.
 
     >>> J = np.random.default_rng(0).normal(size=(30, 2, 4))
     >>> found = study(J, poses=[3, 5], subsets={"mine": [1, 2, 3]}, random=20)
     >>> bool((found["efficiency"] >= found["random_efficiency_p95"]).all())
     True
     """
-    if not isinstance(source, Campaign):
-        of_robot = (measurements, splits, holdout, least_distance_deg, trials, precision, pool,
-                    repeats, refine)
-        if any(one is not None for one in of_robot):
-            raise InputError("study(): measurements and simulations are of a campaign")
-        return _study_blocks(source, rows, prior, held, test_poses, subsets or {}, {
-            "poses": _counts(poses),
-            "criteria": [criteria] if isinstance(criteria, str) else criteria,
-            "random": random,
-            "prior": prior_flag(prior),
-            "exclude": names(exclude),
-            "repeat_limit": repeat_limit,
-            "starts": starts,
-            "proof": proof,
-            "seed": seed,
-        }, call_options(threads, time, progress))
-    if any(one is not None for one in (subsets, rows, held, repeat_limit, proof)):
-        raise InputError("study(): `subsets`, `rows`, `held`, `repeat_limit` and `proof` are of "
-                         "Jacobians, not of a campaign")
-    has_prior = campaign_prior(prior)
-    shared = {
+    keywords: dict[str, Any] = {
         "poses": _counts(poses),
         "criteria": [criteria] if isinstance(criteria, str) else criteria,
         "random": random,
+        "splits": splits,
+        "holdout": holdout,
         "least_distance_deg": least_distance_deg,
+        "exclude": names("exclude", exclude),
+        "prior": prior_flag(prior),
+        "trials": trials,
+        "precision": precision,
+        "pool": pool,
+        "repeats": repeats,
+        "refine": refine,
         "starts": starts,
         "seed": seed,
+        "repeat_limit": repeat_limit,
+        "proof": proof,
+        "force": force,
     }
+    if not isinstance(source, Campaign):
+        kind = "Jacobians"
+    else:
+        kind = "a campaign" if measurements is not None else "a simulation"
+    of_kind = {"measurements": measurements, "test_poses": test_poses, "subsets": subsets,
+               "rows": rows, "held": held}
+    check_keywords("study", {**keywords, **of_kind}, kind)
     options = call_options(threads, time, progress)
     with Files() as files:
-        if measurements is None:
-            simulated = {
-                "trials": trials,
-                "precision": precision,
-                "pool": pool,
-                "test_poses": test_poses,
-                "repeats": repeats,
-                "refine": refine,
-            }
-            keywords = as_json("study", {**shared, **simulated})
-            result = _posewise.simulate_study(source._core, keywords, has_prior, options)
+        if not isinstance(source, Campaign):
+            blocks = make_blocks(source, rows, prior, held, test_poses)
+            own = _own_subsets(subsets)
+            result = _posewise.study_plain(blocks.core(), as_json("study", keywords), own, options)
         else:
-            keywords = as_json("study", {**shared, "splits": splits, "holdout": holdout})
-            result = _posewise.study(
-                source._core,
-                files.table(measurements, "measurements"),
-                keywords,
-                names(exclude),
-                has_prior,
-                force,
-                options,
-            )
-        return Study(json.loads(result[0]), result[1], files.warn(result[2]))
+            campaign_prior(prior)
+            inputs = given({"measurements": table(measurements, "measurements")})
+            stated = {**keywords, "test_poses": test_poses, **files.open(inputs)}
+            result = _posewise.study(source._core, as_json("study", stated), options)
+        doubts = files.spoken(result[2])
+    return made(Study(json.loads(result[0]), result[1], doubts), doubts, options)

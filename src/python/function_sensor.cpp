@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "call.hpp"
 #include "measurement/differences.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
@@ -59,6 +60,7 @@ std::vector<bool> FunctionSensor::unknown_is_angle() const {
 void FunctionSensor::predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                              Eigen::Ref<VectorXd> observation) const {
     const py::gil_scoped_acquire lock;
+    const UnforkedProcess here;
     const RowMatrixXd frame = world_from_flange.matrix();
     VectorXd numbers;
     try {

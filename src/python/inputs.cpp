@@ -42,15 +42,15 @@ Earlier read_earlier(const std::string& path, const Campaign& campaign, const Ea
     return earlier;
 }
 
-io::CampaignFile planned_campaign(const io::CampaignFile& campaign, const PlanRequest& request,
-                                  std::optional<bool> prior, const std::string& estimate,
-                                  bool is_forced, Sentences& warnings) {
-    if (estimate.empty()) return io::planned_campaign(campaign, prior);
+io::CampaignFile planned_campaign(const io::CampaignFile& campaign, const PlanCall& asked,
+                                  const StopSignal& stop, Sentences& warnings) {
+    const std::string& estimate = asked.request.sources.estimate;
+    if (estimate.empty()) return io::planned_campaign(campaign, asked.prior, stop);
     io::CampaignFile file = campaign;
-    io::set_prior(file, prior);
+    io::set_prior(file, asked.prior, stop);
     file.planned_model.reset();
-    static_cast<Campaign&>(file) =
-        with_earlier(file, read_earlier(estimate, file, request.earlier, is_forced, warnings));
+    static_cast<Campaign&>(file) = with_earlier(
+        file, read_earlier(estimate, file, asked.request.earlier, asked.is_forced, warnings));
     return file;
 }
 
@@ -77,45 +77,47 @@ JudgeCalibration judge(bool is_forced, Sentences& warnings) {
     };
 }
 
-ChoiceInputs read_choice(const ChoiceTables& tables, const io::CampaignFile& campaign,
-                         const PlanRequest& request, const std::vector<Index>& groups,
+ChoiceInputs read_choice(const PlanCall& asked, const io::CampaignFile& campaign,
                          Sentences& warnings) {
     ChoiceInputs inputs;
-    static_cast<PlanRequest&>(inputs.options) = request;
-    inputs.options.groups = groups;
-    if (tables.kind == CandidateKind::Random) {
+    ChoiceOptions& options = inputs.options;
+    static_cast<PlanRequest&>(options) = asked.request;
+    options.groups = asked.groups;
+    const PlanSources& sources = options.sources;
+    if (asked.kind == CandidateKind::Random) {
         inputs.candidates =
-            random_candidates(campaign, tables.random_count, request.seed.value_or(campaign.seed));
-    } else if (tables.kind == CandidateKind::Measurements) {
+            random_candidates(campaign, asked.random_count, options.seed.value_or(campaign.seed));
+    } else if (asked.kind == CandidateKind::Measurements) {
         inputs.candidates =
-            measured_candidates(read_measured(tables.candidates, campaign, {}, warnings));
+            measured_candidates(read_measured(sources.candidates, campaign, {}, warnings));
     } else {
-        io::Configurations read = io::read_configurations(tables.candidates, campaign);
-        inputs.candidates = {tables.kind,
+        io::Configurations read = io::read_configurations(sources.candidates, campaign);
+        inputs.candidates = {asked.kind,
                              std::move(read.ids),
                              std::move(read.joints),
                              read.is_seen.cast<double>(),
                              std::nullopt,
                              {}};
     }
-    if (!tables.held.empty()) {
-        inputs.options.held = read_measured(tables.held, campaign, {}, warnings);
+    if (!sources.augment.empty()) {
+        options.held = read_measured(sources.augment, campaign, {}, warnings);
     }
-    if (!tables.test_poses.empty()) {
-        inputs.options.test_poses = io::read_configurations(tables.test_poses, campaign).joints;
+    if (!sources.test_poses.empty()) {
+        options.test_poses = io::read_configurations(sources.test_poses, campaign).joints;
     }
     return inputs;
 }
 
-PlanningOptions read_planning(const PlanningTables& tables, const io::CampaignFile& campaign,
-                              const PlanRequest& request, Sentences& warnings) {
+PlanningOptions read_planning(const PlanRequest& request, const io::CampaignFile& campaign,
+                              Sentences& warnings) {
     PlanningOptions options;
     static_cast<PlanRequest&>(options) = request;
-    if (!tables.held.empty()) {
-        options.held = read_measured(tables.held, campaign, {}, warnings);
+    const PlanSources& sources = options.sources;
+    if (!sources.augment.empty()) {
+        options.held = read_measured(sources.augment, campaign, {}, warnings);
     }
-    if (!tables.workspace.empty()) {
-        options.workspace = io::read_configurations(tables.workspace, campaign).joints;
+    if (!sources.workspace.empty()) {
+        options.workspace = io::read_configurations(sources.workspace, campaign).joints;
     }
     return options;
 }
@@ -126,11 +128,13 @@ ChoiceOptions read_plain(const PlainBlocks& blocks, const PlanRequest& request,
     static_cast<PlanRequest&>(options) = request;
     options.groups = groups;
     options.sources.rows_per_block = blocks.rows;
-    if (blocks.held.rows() > 0) {
-        const Index rows =
-            blocks.held_count > 0 ? blocks.held.rows() / blocks.held_count : blocks.held.rows();
-        options.held_blocks = make_equal_blocks(blocks.held, rows);
+    Blocks& held = options.held_blocks;
+    if (blocks.held_count > 0) {
+        held = make_equal_blocks(blocks.held, blocks.held.rows() / blocks.held_count);
     }
+    held.matrix.conservativeResize(blocks.held.rows() + blocks.prior.rows(),
+                                   blocks.candidates.cols());
+    held.matrix.bottomRows(blocks.prior.rows()) = blocks.prior;
     if (blocks.test_poses.rows() > 0) {
         options.test_blocks = make_equal_blocks(blocks.test_poses, blocks.rows);
     }

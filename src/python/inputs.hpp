@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "keywords.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/measurements_file.hpp"
@@ -20,10 +21,9 @@ using Sentences = std::vector<std::string>;
 Earlier read_earlier(const std::string& path, const Campaign& campaign, const EarlierUse& use,
                      bool is_forced, Sentences& warnings);
 
-/// The campaign as poses are planned with: as the estimate at `path` found it, if there is one.
-io::CampaignFile planned_campaign(const io::CampaignFile& campaign, const PlanRequest& request,
-                                  std::optional<bool> prior, const std::string& estimate,
-                                  bool is_forced, Sentences& warnings);
+/// The campaign as poses are planned with: as the request's estimate found it, if there is one.
+io::CampaignFile planned_campaign(const io::CampaignFile& campaign, const PlanCall& asked,
+                                  const StopSignal& stop, Sentences& warnings);
 
 /// Measurements in a table; without those excluded.
 io::MeasurementsFile read_measured(const std::string& path, const io::CampaignFile& campaign,
@@ -34,31 +34,16 @@ io::MeasurementsFile read_measured(const std::string& path, const io::CampaignFi
 /// InputError, unless it is forced.
 JudgeCalibration judge(bool is_forced, Sentences& warnings);
 
-/// Tables of a choice, "" where there is none.
-struct ChoiceTables {
-    CandidateKind kind = CandidateKind::Configurations;
-    std::string candidates;  ///< for kinds Measurements and Configurations
-    Index random_count = 0;  ///< for kind Random
-    std::string held;
-    std::string test_poses;
-};
-/// What choose() and verify() need besides the campaign.
+/// What choose() and verify() need besides the campaign, from the sources of the request.
 struct ChoiceInputs {
     Candidates candidates;
     ChoiceOptions options;
 };
-ChoiceInputs read_choice(const ChoiceTables& tables, const io::CampaignFile& campaign,
-                         const PlanRequest& request, const std::vector<Index>& groups,
+ChoiceInputs read_choice(const PlanCall& asked, const io::CampaignFile& campaign,
                          Sentences& warnings);
-
-/// Tables of a plan, "" where there is none.
-struct PlanningTables {
-    std::string held;
-    std::string workspace;
-};
 /// What make_plan() and verify() need besides the campaign.
-PlanningOptions read_planning(const PlanningTables& tables, const io::CampaignFile& campaign,
-                              const PlanRequest& request, Sentences& warnings);
+PlanningOptions read_planning(const PlanRequest& request, const io::CampaignFile& campaign,
+                              Sentences& warnings);
 
 /// Matrices of a choice from plain blocks; those of no rows are none.
 struct PlainBlocks {
@@ -66,6 +51,7 @@ struct PlainBlocks {
     Index rows = 1;          ///< of each candidate
     RowMatrixXd held;        ///< known already, as rows
     Index held_count = 0;    ///< poses that these are of, each with as many
+    RowMatrixXd prior;       ///< rows whose information is known before
     RowMatrixXd test_poses;  ///< blocks as the candidates'
 };
 /// What choose() and verify() need of them.

@@ -16,6 +16,7 @@ using detail::Number;
 using detail::OneOf;
 
 constexpr Index most_poses = 1000000;
+constexpr Index most_drawn = 10000000;
 constexpr double degree = to_radians(1);
 constexpr double millimetre = 1e-3;
 
@@ -75,27 +76,27 @@ void read_earlier(const Stated& stated, EarlierUse& use) {
     stated.in(1e-3, "drift_mrad", use.drift.angle, drift);
 }
 
+void read_prior(const Stated& stated, std::optional<bool>& prior) {
+    if (stated.has("prior")) stated("prior", prior.emplace());
+}
+
 /// What select and plan have in common.
-PlanRequest read_request(const Stated& stated) {
-    PlanRequest request;
+PlanCall read_call(const Stated& stated) {
+    PlanCall call;
+    PlanRequest& request = call.request;
     stated("poses", request.pose_count, Count{1, most_poses});
     read_criterion(stated, request.criterion);
-    stated("prior", request.has_prior);
+    read_prior(stated, call.prior);
+    request.has_prior = call.prior.value_or(false);
+    stated("force", call.is_forced);
+    stated("held", request.sources.augment);
+    stated("estimate", request.sources.estimate);
     stated("focus", request.is_focused_on_robot, OneOf(foci));
     stated("repeats", request.repeats, Number{.least = 1, .most = 1e9});
     stated("starts", request.starts, Count{0, 1000000});
     stated("seed", request.seed);
     read_earlier(stated, request.earlier);
-    return request;
-}
-
-void read_study(const Stated& stated, StudyOptions& options) {
-    if (stated.has("criteria")) stated("criteria", options.criteria.emplace());
-    stated("poses", options.pose_counts, Count{1, most_poses});
-    stated("random", options.random_subsets, Count{0, most_poses});
-    stated.in(degree, "least_distance_deg", options.least_distance, Number{.least = 0});
-    stated("starts", options.starts, Count{1, 1000000});
-    stated("seed", options.seed);
+    return call;
 }
 
 }  // namespace
@@ -104,29 +105,40 @@ Keywords parse_keywords(const std::string& function, const std::string& json) {
     return {function, detail::Json::parse(json)};
 }
 
-PlanRequest choice_request(const Keywords& keywords) {
+PlanCall choice_call(const Keywords& keywords) {
     const Stated stated(keywords);
-    PlanRequest request = read_request(stated);
+    PlanCall call = read_call(stated);
+    PlanRequest& request = call.request;
+    stated("candidates", request.sources.candidates);
+    stated("measurements", request.sources.candidates);
+    stated("random", call.random_count, Count{1, most_drawn});
+    if (stated.has("measurements")) call.kind = CandidateKind::Measurements;
+    if (stated.has("random")) call.kind = CandidateKind::Random;
+    stated("test_poses", request.sources.test_poses);
+    stated("groups", call.groups, Count{0, most_drawn});
     stated("per_group", request.group_limit, Count{1, most_poses});
     stated("exclude", request.excluded);
     stated("repeat_limit", request.repeat_limit, Count{1, most_poses});
     stated.in(degree, "least_distance_deg", request.least_distance, Number{.least = 0});
     stated("proof", request.proof, Number{.least = 0, .most = 1e9});
-    return request;
+    return call;
 }
 
-PlanRequest planning_request(const Keywords& keywords) {
+PlanCall planning_call(const Keywords& keywords) {
     const Stated stated(keywords);
-    PlanRequest request = read_request(stated);
+    PlanCall call = read_call(stated);
+    PlanRequest& request = call.request;
     if (!stated.has("repeats")) request.repeats = 1;
+    stated("repair", request.sources.repaired);
     stated("drop", request.dropped);
+    stated("workspace", request.sources.workspace);
     stated("workspace_poses", request.workspace_count, Count{1, 20000});
     stated("workspace_box_mm", request.workspace_box_mm);
     stated("workspace_target", request.workspace_target, Count{0, 10000});
-    stated("pool", request.pool_count, Count{1, 10000000});
+    stated("pool", request.pool_count, Count{1, most_drawn});
     stated("verification", request.verification_count, Count{0, 10000});
     stated("random_order", request.random_order, Number{.least = 1, .most = 1e6});
-    return request;
+    return call;
 }
 
 std::optional<TargetOptions> target_options(const Keywords& keywords) {
@@ -147,10 +159,16 @@ std::optional<TargetOptions> target_options(const Keywords& keywords) {
     return target;
 }
 
-CalibrationRequest calibration_request(const Keywords& keywords) {
+CalibrationCall calibration_call(const Keywords& keywords) {
     const Stated stated(keywords);
-    CalibrationRequest request;
-    CalibrationOptions& options = request.options;
+    CalibrationCall call;
+    CalibrationOptions& options = call.options;
+    stated("measurements", call.measurements);
+    stated("plan", call.plan);
+    stated("points_unit", call.points_unit);
+    stated("validate", call.validation);
+    stated("estimate", call.estimate);
+    stated("force", call.is_forced);
     stated("method", options.method, OneOf(detail::method_names));
     stated("loss", options.joint.loss.kind, OneOf(detail::loss_names));
     stated("loss_width", options.joint.loss.width, Number{.above = 0, .most = 1e6});
@@ -161,33 +179,37 @@ CalibrationRequest calibration_request(const Keywords& keywords) {
         stated.in(millimetre, "limit_mm", options.limit.emplace(), Number{.above = 0, .most = 1e6});
     }
     stated("exclude", options.excluded);
-    stated("prior", request.prior);
-    if (stated.has("sizes")) stated("sizes", request.learns_sizes.emplace(), OneOf(sizes));
-    stated("free", request.free);
-    read_earlier(stated, request.earlier);
-    return request;
+    read_prior(stated, call.prior);
+    if (stated.has("sizes")) stated("sizes", call.learns_sizes.emplace(), OneOf(sizes));
+    stated("free", call.free);
+    read_earlier(stated, call.earlier);
+    return call;
 }
 
-StudyOptions study_options(const Keywords& keywords) {
+StudyCall study_call(const Keywords& keywords) {
     const Stated stated(keywords);
-    StudyOptions options;
-    read_study(stated, options);
+    StudyCall call;
+    SimulatedStudyOptions& options = call.options;
+    if (stated.has("criteria")) stated("criteria", options.criteria.emplace());
+    stated("poses", options.pose_counts, Count{1, most_poses});
+    stated("measurements", call.measurements);
+    if (!call.measurements.empty()) options.random_subsets = StudyOptions().random_subsets;
+    stated("random", options.random_subsets, Count{0, most_poses});
+    stated.in(degree, "least_distance_deg", options.least_distance, Number{.least = 0});
+    stated("starts", options.starts, Count{1, 1000000});
+    stated("seed", options.seed);
+    stated("exclude", call.excluded);
+    read_prior(stated, call.prior);
+    stated("force", call.is_forced);
     if (stated.has("splits")) stated("splits", options.splits.emplace(), Count{0, most_poses});
     stated("holdout", options.holdout, Number{.above = 0, .most = 0.9});
-    return options;
-}
-
-SimulatedStudyOptions simulated_study_options(const Keywords& keywords) {
-    const Stated stated(keywords);
-    SimulatedStudyOptions options;
-    read_study(stated, options);
     stated("trials", options.trials, Count{1, 100000000});
     stated("precision", options.precision, Number{.least = 0, .most = 1});
-    stated("pool", options.pool_count, Count{1, 10000000});
+    stated("pool", options.pool_count, Count{1, most_drawn});
     stated("test_poses", options.test_count, Count{1, most_poses});
     stated("repeats", options.repeats, Count{1, most_poses});
     stated("refine", options.is_refined);
-    return options;
+    return call;
 }
 
 BlocksStudyOptions blocks_study_options(const Keywords& keywords) {

@@ -23,23 +23,47 @@ struct Keywords {
 };
 Keywords parse_keywords(const std::string& function, const std::string& json);
 
-PlanRequest choice_request(const Keywords& keywords);
-PlanRequest planning_request(const Keywords& keywords);
+/// What was asked of select and plan besides the library's request. Its sources are paths.
+struct PlanCall {
+    PlanRequest request;
+    std::optional<bool> prior;  ///< whether expected sizes are priors; nothing: as stated
+    bool is_forced = false;     ///< takes what should not be used
+
+    // Of select.
+    CandidateKind kind = CandidateKind::Configurations;
+    Index random_count = 0;     ///< for kind Random
+    std::vector<Index> groups;  ///< label of each candidate; empty: none
+};
+PlanCall choice_call(const Keywords& keywords);
+PlanCall planning_call(const Keywords& keywords);
 /// Nothing: a number of poses is asked for instead.
 std::optional<TargetOptions> target_options(const Keywords& keywords);
 
-/// What a calibration is asked for besides CalibrationOptions.
-struct CalibrationRequest {
+/// What was asked of a calibration. Paths of files are empty where there is none.
+struct CalibrationCall {
     CalibrationOptions options;
-    std::optional<bool> prior;         ///< whether expected sizes are priors; nothing: as stated
+    std::string measurements;
+    std::string plan;
+    std::string points_unit;
+    std::string validation;
+    std::string estimate;
+    EarlierUse earlier;
+    std::optional<bool> prior;         ///< as of PlanCall
     std::optional<bool> learns_sizes;  ///< nothing: as stated
     std::vector<std::string> free;     ///< errors to identify; empty: the campaign's
-    EarlierUse earlier;
+    bool is_forced = false;
 };
-CalibrationRequest calibration_request(const Keywords& keywords);
+CalibrationCall calibration_call(const Keywords& keywords);
 
-StudyOptions study_options(const Keywords& keywords);
-SimulatedStudyOptions simulated_study_options(const Keywords& keywords);
+/// What was asked of a study of a campaign.
+struct StudyCall {
+    SimulatedStudyOptions options;
+    std::string measurements;  ///< path of the file; empty: simulated
+    std::vector<std::string> excluded;
+    std::optional<bool> prior;
+    bool is_forced = false;
+};
+StudyCall study_call(const Keywords& keywords);
 BlocksStudyOptions blocks_study_options(const Keywords& keywords);
 
 }  // namespace posewise::python

@@ -28,8 +28,6 @@ namespace py = pybind11;
 /// A document, the same as text, and warnings.
 using Result = std::tuple<std::string, std::string, Sentences>;
 
-using Groups = std::vector<Index>;
-
 /// An array that owns the numbers of a matrix.
 py::array_t<double> to_array(RowMatrixXd&& matrix, std::vector<py::ssize_t> shape) {
     auto* const kept = new RowMatrixXd(std::move(matrix));
@@ -40,7 +38,9 @@ py::array_t<double> to_array(RowMatrixXd&& matrix, std::vector<py::ssize_t> shap
 // ---- Campaigns ----
 
 io::CampaignFile parse_campaign(const std::string& content, const std::string& path) {
-    return call([&] { return io::parse_campaign(content, path); });
+    return call([&](const CallControl& control) {
+        return io::parse_campaign(content, path, control.stop);
+    });
 }
 
 /// Blocks of all targets, as many rows for each pose: poses x rows x parameters.
@@ -99,7 +99,7 @@ void define_campaign(py::module_& module) {
                  const auto sensor = std::make_shared<const FunctionSensor>(FunctionSensorParts{
                      std::move(predict), std::move(names), std::move(is_angle), std::move(sigmas),
                      Targets(targets), std::move(unknown), std::move(unknown_is_angle)});
-                 return call([&] { return with_sensor(file, sensor, values); });
+                 return call([&](const CallControl&) { return with_sensor(file, sensor, values); });
              })
         .def("jacobian", &jacobian)
         .def("flange", &flange)
@@ -123,62 +123,61 @@ Result to_result(const Verification& verification, const Plan& plan) {
     return {io::to_json(verification, plan, ""), format_findings(verification.findings), {}};
 }
 
-Result choose_plain(const PlainBlocks& blocks, const std::string& keywords, const Groups& groups,
+Result choose_plain(const PlainBlocks& blocks, const std::string& keywords,
                     const CallOptions& call_options) {
-    const PlanRequest request = choice_request(parse_keywords("select", keywords));
+    const PlanCall asked = choice_call(parse_keywords("select", keywords));
     return call(call_options, [&](const CallControl& control) {
-        ChoiceOptions options = read_plain(blocks, request, groups);
+        ChoiceOptions options = read_plain(blocks, asked.request, asked.groups);
         control.steer(options);
         return to_result(choose(make_equal_blocks(blocks.candidates, blocks.rows), options), {});
     });
 }
 
-Result verify_plain(const std::string& plan_path, const PlainBlocks& blocks, const Groups& groups,
-                    const CallOptions& call_options) {
+Result choose_of_campaign(const io::CampaignFile& campaign, const std::string& keywords,
+                          const CallOptions& call_options) {
+    PlanCall asked = choice_call(parse_keywords("select", keywords));
+    asked.request.sources.campaign = campaign.path;
+    return call(call_options, [&](const CallControl& control) {
+        Sentences warnings;
+        const io::CampaignFile file = planned_campaign(campaign, asked, control.stop, warnings);
+        ChoiceInputs inputs = read_choice(asked, file, warnings);
+        inputs.options.judge = judge(asked.is_forced, warnings);
+        control.steer(inputs.options);
+        return to_result(choose(file, std::move(inputs.candidates), inputs.options), warnings);
+    });
+}
+
+/// A plan as it was asked for. An estimate that was taken by force may be taken again.
+PlanCall asked_again(const Plan& plan, std::vector<Index> groups) {
+    return {plan.request, plan.request.has_prior, true,
+            plan.kind,    plan.candidate_count,   std::move(groups)};
+}
+
+Result verify_plain(const std::string& plan_path, const PlainBlocks& blocks,
+                    std::vector<Index> groups) {
     const Plan plan = io::read_plan(plan_path);
-    return call(call_options, [&](const CallControl&) {
-        return to_result(verify(plan, make_equal_blocks(blocks.candidates, blocks.rows),
-                                read_plain(blocks, plan.request, groups)),
+    return call([&](const CallControl& control) {
+        ChoiceOptions options = read_plain(blocks, plan.request, groups);
+        options.stop = control.stop;
+        return to_result(verify(plan, make_equal_blocks(blocks.candidates, blocks.rows), options),
                          plan);
     });
 }
 
-Result choose_of_campaign(const io::CampaignFile& campaign, const ChoiceTables& tables,
-                          const std::string& keywords, std::optional<bool> prior,
-                          const std::string& estimate, bool is_forced, const Groups& groups,
-                          const CallOptions& call_options) {
-    PlanRequest request = choice_request(parse_keywords("select", keywords));
-    request.has_prior = prior.value_or(false);
-    request.sources.campaign = campaign.path;
-    request.sources.estimate = estimate;
-    return call(call_options, [&](const CallControl& control) {
-        Sentences warnings;
-        const io::CampaignFile file =
-            planned_campaign(campaign, request, prior, estimate, is_forced, warnings);
-        ChoiceInputs inputs = read_choice(tables, file, request, groups, warnings);
-        inputs.options.judge = judge(is_forced, warnings);
-        control.steer(inputs.options);
-        const Plan plan = choose(file, std::move(inputs.candidates), inputs.options);
-        return to_result(plan, warnings);
-    });
-}
-
 Result verify_of_campaign(const std::string& plan_path, const io::CampaignFile& campaign,
-                          ChoiceTables tables, const std::string& estimate, const Groups& groups,
-                          const CallOptions& call_options) {
+                          std::vector<Index> groups) {
     const Plan plan = io::read_plan(plan_path);
-    return call(call_options, [&](const CallControl&) {
+    return call([&](const CallControl& control) {
         Sentences warnings;
-        const io::CampaignFile file = planned_campaign(
-            campaign, plan.request, plan.request.has_prior, estimate, true, warnings);
+        const PlanCall asked = asked_again(plan, groups);
+        const io::CampaignFile file = planned_campaign(campaign, asked, control.stop, warnings);
         if (plan.is_continuous()) {
-            const PlanningOptions options =
-                read_planning({tables.held, tables.test_poses}, file, plan.request, warnings);
+            PlanningOptions options = read_planning(plan.request, file, warnings);
+            options.stop = control.stop;
             return to_result(verify(plan, file, options), plan);
         }
-        tables.kind = plan.kind;
-        tables.random_count = plan.candidate_count;
-        const ChoiceInputs inputs = read_choice(tables, file, plan.request, groups, warnings);
+        ChoiceInputs inputs = read_choice(asked, file, warnings);
+        inputs.options.stop = control.stop;
         return to_result(verify(plan, file, inputs.candidates, inputs.options), plan);
     });
 }
@@ -186,36 +185,37 @@ Result verify_of_campaign(const std::string& plan_path, const io::CampaignFile& 
 /// Values of all criteria, by name.
 std::vector<std::pair<std::string, double>> rate_blocks(const RowMatrixXd& stacked, Index poses,
                                                         const PlainBlocks& blocks) {
-    const Blocks tests = make_equal_blocks(
-        blocks.test_poses.rows() > 0 ? blocks.test_poses : blocks.candidates, blocks.rows);
-    check_values(stacked);
-    std::vector<std::pair<std::string, double>> values;
-    for (const Criterion criterion : all_criteria) {
-        values.emplace_back(criterion_name(criterion),
-                            evaluate_rows(criterion, stacked, poses, &tests));
-    }
-    return values;
+    const auto compute = [&](const CallControl& control) {
+        const Blocks tests = make_equal_blocks(
+            blocks.test_poses.rows() > 0 ? blocks.test_poses : blocks.candidates, blocks.rows);
+        check_values(stacked);
+        std::vector<std::pair<std::string, double>> values;
+        for (const Criterion criterion : all_criteria) {
+            control.stop.check("rating poses");
+            values.emplace_back(criterion_name(criterion),
+                                evaluate_rows(criterion, stacked, poses, &tests));
+        }
+        return values;
+    };
+    constexpr Index few = 10000;
+    return blocks.candidates.size() < few ? call_here([&] { return compute({}); }) : call(compute);
 }
 
 // ---- Plans ----
 
 Result plan_campaign(const io::CampaignFile& campaign, const std::string& keywords,
-                     std::optional<bool> prior, const std::string& estimate, bool is_forced,
-                     const std::string& held, const std::string& workspace,
-                     const std::string& repaired, const CallOptions& call_options) {
+                     const CallOptions& call_options) {
     const Keywords stated = parse_keywords("plan", keywords);
-    PlanRequest request = planning_request(stated);
+    PlanCall asked = planning_call(stated);
     const std::optional<TargetOptions> target = target_options(stated);
-    request.has_prior = prior.value_or(false);
-    request.sources.campaign = campaign.path;
-    request.sources.estimate = estimate;
-    request.time_limit = call_options.time;
+    asked.request.sources.campaign = campaign.path;
+    asked.request.time_limit = call_options.time;
     return call(call_options, [&](const CallControl& control) -> Result {
         Sentences warnings;
-        const io::CampaignFile file =
-            planned_campaign(campaign, request, prior, estimate, is_forced, warnings);
+        const io::CampaignFile file = planned_campaign(campaign, asked, control.stop, warnings);
         for (const OnAxis& one : find_on_axis(file)) warnings.push_back(describe(one));
-        PlanningOptions options = read_planning({held, workspace}, file, request, warnings);
+        PlanningOptions options = read_planning(asked.request, file, warnings);
+        const std::string& repaired = asked.request.sources.repaired;
         if (!repaired.empty()) options.repaired = io::read_plan(repaired);
         options.richer = [&] { return io::richer_campaigns(file, prior); };
         control.steer(options);
@@ -235,12 +235,19 @@ Result plan_campaign(const io::CampaignFile& campaign, const std::string& keywor
     });
 }
 
+/// Throws InputError unless the file holds a plan of that campaign.
+void check_plan(const std::string& path, const io::CampaignFile& campaign) {
+    const std::string mismatch = describe_mismatch(io::read_plan(path), campaign);
+    if (!mismatch.empty()) throw InputError(path + ": " + mismatch);
+}
+
 /// A document of a plan as a plan file, and what goes with it.
 void write_plan(const std::string& document_path, const std::string& path,
-                const io::CampaignFile* campaign, const io::PlanTables& tables) {
+                const io::CampaignFile* campaign, const io::PlanTables& tables,
+                const Sentences& warnings) {
     const Plan plan = io::read_plan(document_path);
-    if (campaign == nullptr) return io::write_plan(path, plan);
-    io::write_plan(path, plan, tables, *campaign);
+    if (campaign == nullptr) return io::write_plan(path, plan, warnings);
+    io::write_plan(path, plan, tables, *campaign, warnings);
 }
 
 // ---- Calibrations ----
@@ -259,47 +266,56 @@ void use_plan(const Plan& plan, const Campaign& campaign, const Measurements& me
     options.verification = find_verification(plan, campaign, measured, options.excluded);
 }
 
-Result calibrate_campaign(const io::CampaignFile& campaign, const std::string& measurements,
-                          const std::string& keywords, const std::string& plan_path,
-                          const std::string& points_unit, const std::string& validation,
-                          const std::string& estimate, bool is_forced,
+Result calibrate_campaign(const io::CampaignFile& campaign, const std::string& keywords,
                           const CallOptions& call_options) {
-    CalibrationRequest request = calibration_request(parse_keywords("calibrate", keywords));
+    CalibrationCall asked = calibration_call(parse_keywords("calibrate", keywords));
     return call(call_options, [&](const CallControl& control) -> Result {
         Sentences warnings;
-        CalibrationOptions& options = request.options;
+        CalibrationOptions& options = asked.options;
         io::CampaignFile file = campaign;
-        io::set_prior(file, request.prior, control.stop);
-        if (request.learns_sizes) file.spread.is_open = *request.learns_sizes;
-        if (!request.free.empty()) {
-            static_cast<Campaign&>(file) = with_free_errors(file, request.free);
+        io::set_prior(file, asked.prior, control.stop);
+        if (asked.learns_sizes) file.spread.is_open = *asked.learns_sizes;
+        if (!asked.free.empty()) {
+            static_cast<Campaign&>(file) = with_free_errors(file, asked.free);
         }
         std::optional<Plan> plan;
-        if (!plan_path.empty()) plan = io::read_plan(plan_path);
-        const io::PointsSource points{plan ? &*plan : nullptr, plan_path, points_unit};
-        const auto measured = read_measured(measurements, file, options.excluded, warnings, points);
-        if (!estimate.empty()) {
-            options.earlier = read_earlier(estimate, file, request.earlier, is_forced, warnings);
+        if (!asked.plan.empty()) plan = io::read_plan(asked.plan);
+        const io::PointsSource points{plan ? &*plan : nullptr, asked.plan, asked.points_unit};
+        const auto measured =
+            read_measured(asked.measurements, file, options.excluded, warnings, points);
+        if (!asked.estimate.empty()) {
+            options.earlier =
+                read_earlier(asked.estimate, file, asked.earlier, asked.is_forced, warnings);
         }
         if (plan) use_plan(*plan, file, measured, options, warnings);
         std::optional<io::MeasurementsFile> judged;
-        if (!validation.empty()) {
-            judged = read_measured(validation, file, {}, warnings);
+        if (!asked.validation.empty()) {
+            judged = read_measured(asked.validation, file, {}, warnings);
             options.validation = &*judged;
         }
         options.global.seed = file.seed;
         if (!has_function_sensor(file)) {
-            options.richer = [&] { return io::richer_campaigns(file, request.prior); };
+            options.richer = [&] { return io::richer_campaigns(file, asked.prior); };
         }
         control.steer(options);
         const Calibration result = calibrate(file, measured, options);
         if (!result.is_identified()) throw InputError(result.estimate.undetermined);
-        judge(is_forced, warnings)(result);
+        judge(asked.is_forced, warnings)(result);
+        if (control.stop.is_set()) {
+            warnings.emplace_back(
+                "stopped early; what it had no time for is not there: errors held out, doubts, "
+                "what would cure them");
+        }
         io::Provenance made_from{"", io::checksum_of(measured), file.path, file.checksum};
         made_from.warnings = warnings;
         made_from.answers = answer(result);
         return {io::to_json(result, made_from), format(result), warnings};
     });
+}
+
+/// Throws InputError unless the file holds an estimate of that campaign's robot and sensor.
+void check_estimate(const std::string& path, const io::CampaignFile& campaign) {
+    io::read_estimate(path, campaign);
 }
 
 /// Expected errors at configurations: for each quantity, whether it is an angle, and a row for each
@@ -311,7 +327,9 @@ std::vector<std::pair<bool, RowMatrixXd>> predict(const io::CampaignFile& campai
     Campaign calibrated = with_model_error(campaign, earlier.estimate);
     if (earlier.estimate.spread) calibrated.spread = *earlier.estimate.spread;
     std::vector<std::pair<bool, RowMatrixXd>> tables;
-    const auto predictions = call([&] { return predict_errors(calibrated, earlier.estimate, q); });
+    const auto predictions = call([&](const CallControl& control) {
+        return predict_errors(calibrated, earlier.estimate, q, control.stop);
+    });
     for (const ErrorPrediction& prediction : predictions) {
         RowMatrixXd table(q.rows() + 1, 5);
         const auto state = [&](Index row, const PredictedError& error) {
@@ -329,37 +347,30 @@ std::vector<std::pair<bool, RowMatrixXd>> predict(const io::CampaignFile& campai
 
 // ---- Studies ----
 
-Result study_measured(const io::CampaignFile& campaign, const std::string& measurements,
-                      const std::string& keywords, const std::vector<std::string>& excluded,
-                      std::optional<bool> prior, bool is_forced, const CallOptions& call_options) {
-    StudyOptions options = study_options(parse_keywords("study", keywords));
-    return call(call_options, [&](const CallControl& control) -> Result {
-        Sentences warnings;
-        io::CampaignFile file = campaign;
-        io::set_prior(file, prior, control.stop);
-        const auto measured = read_measured(measurements, file, excluded, warnings);
-        options.judge = judge(is_forced, warnings);
-        control.steer(options);
-        const std::vector studies{study(file, measured, options)};
-        if (studies.front().ending == Ending::NotIdentifiable) {
-            throw InputError(studies.front().undetermined);
-        }
-        return {io::with_sentences(io::to_json(studies), warnings, answer(studies)),
-                format(studies.front()), warnings};
-    });
+Result to_result(const Study& study, Sentences warnings) {
+    if (study.ending == Ending::NotIdentifiable) throw InputError(study.undetermined);
+    const std::string early = describe_early_end(study);
+    if (!early.empty()) warnings.push_back(early);
+    const std::vector studies{study};
+    return {io::with_sentences(io::to_json(studies), warnings, answer(studies)), format(study),
+            warnings};
 }
 
-Result study_simulated(const io::CampaignFile& campaign, const std::string& keywords,
-                       std::optional<bool> prior, const CallOptions& call_options) {
-    SimulatedStudyOptions options = simulated_study_options(parse_keywords("study", keywords));
-    return call(call_options, [&](const CallControl& control) -> Result {
+Result study_campaign(const io::CampaignFile& campaign, const std::string& keywords,
+                      const CallOptions& call_options) {
+    StudyCall asked = study_call(parse_keywords("study", keywords));
+    return call(call_options, [&](const CallControl& control) {
+        Sentences warnings;
         io::CampaignFile file = campaign;
-        io::set_prior(file, prior, control.stop);
-        control.steer(options);
-        const auto studies = simulate_study({{"", file, std::nullopt}}, options);
-        return {io::with_sentences(io::to_json(studies), {}, answer(studies)),
-                format(studies.front()),
-                {}};
+        io::set_prior(file, asked.prior, control.stop);
+        control.steer(asked.options);
+        if (asked.measurements.empty()) {
+            return to_result(simulate_study({{"", file, std::nullopt}}, asked.options).front(), {});
+        }
+        asked.options.judge = judge(asked.is_forced, warnings);
+        const auto measured = read_measured(asked.measurements, file, asked.excluded, warnings);
+        const Study found = study(file, measured, asked.options);
+        return to_result(found, warnings);
     });
 }
 
@@ -372,7 +383,9 @@ Result study_plain(const PlainBlocks& blocks, const std::string& keywords,
         for (auto& [name, poses] : subsets) options.subsets.push_back({name, poses});
         control.steer(options);
         const BlocksStudy found = study(make_equal_blocks(blocks.candidates, blocks.rows), options);
-        return {io::to_json(found), format(found), {}};
+        Sentences warnings{describe_early_end(found)};
+        if (warnings.front().empty()) warnings.clear();
+        return {io::to_json(found), format(found), warnings};
     });
 }
 
@@ -381,27 +394,17 @@ void define_records(py::module_& module) {
         .def(py::init([](std::optional<Index> threads, double time, py::object progress) {
                  return CallOptions{threads, time, std::move(progress)};
              }),
-             py::arg("threads"), py::arg("time"), py::arg("progress"));
+             py::arg("threads"), py::arg("time"), py::arg("progress"))
+        .def_readonly("is_interrupted", &CallOptions::is_interrupted);
     py::class_<PlainBlocks>(module, "PlainBlocks")
         .def(py::init([](RowMatrixXd candidates, Index rows, RowMatrixXd held, Index held_count,
-                         RowMatrixXd test_poses) {
-                 return PlainBlocks{std::move(candidates), rows, std::move(held), held_count,
-                                    std::move(test_poses)};
+                         RowMatrixXd prior, RowMatrixXd test_poses) {
+                 return PlainBlocks{std::move(candidates), rows,
+                                    std::move(held),       held_count,
+                                    std::move(prior),      std::move(test_poses)};
              }),
              py::arg("candidates"), py::arg("rows"), py::arg("held"), py::arg("held_count"),
-             py::arg("test_poses"));
-    py::enum_<CandidateKind>(module, "CandidateKind")
-        .value("measurements", CandidateKind::Measurements)
-        .value("configurations", CandidateKind::Configurations)
-        .value("random", CandidateKind::Random);
-    py::class_<ChoiceTables>(module, "ChoiceTables")
-        .def(py::init([](CandidateKind kind, std::string candidates, Index random_count,
-                         std::string held, std::string test_poses) {
-                 return ChoiceTables{kind, std::move(candidates), random_count, std::move(held),
-                                     std::move(test_poses)};
-             }),
-             py::arg("kind"), py::arg("candidates"), py::arg("random_count"), py::arg("held"),
-             py::arg("test_poses"));
+             py::arg("prior"), py::arg("test_poses"));
 }
 
 }  // namespace
@@ -410,6 +413,7 @@ void define_records(py::module_& module) {
 PYBIND11_MODULE(_posewise, module) {
     using namespace posewise::python;
     posewise::fix_cache_sizes();
+    RunningCall::register_exit();
     module.doc() = "Compiled half of posewise; use the package posewise.";
     module.attr("version") = posewise::version;
     pybind11::register_exception<posewise::InputError>(module, "InputError", PyExc_ValueError);
@@ -419,21 +423,20 @@ PYBIND11_MODULE(_posewise, module) {
     module.def("verify_plain", &verify_plain);
     module.def("choose", &choose_of_campaign);
     module.def("verify", &verify_of_campaign);
-    module.def("rate_blocks", [](const posewise::RowMatrixXd& stacked, posewise::Index poses,
-                                 const PlainBlocks& blocks) {
-        return call_here([&] { return rate_blocks(stacked, poses, blocks); });
-    });
+    module.def("rate_blocks", &rate_blocks);
     module.def("plan", &plan_campaign);
+    module.def("check_plan", &check_plan);
     module.def("write_plan", [](const std::string& document_path, const std::string& path,
                                 const posewise::io::CampaignFile* campaign, std::string csv,
-                                std::string targets) {
+                                std::string targets, const Sentences& warnings) {
         call_here([&] {
-            write_plan(document_path, path, campaign, {std::move(csv), std::move(targets)});
+            write_plan(document_path, path, campaign, {std::move(csv), std::move(targets)},
+                       warnings);
         });
     });
     module.def("calibrate", &calibrate_campaign);
+    module.def("check_estimate", &check_estimate);
     module.def("predict", &predict);
-    module.def("study", &study_measured);
+    module.def("study", &study_campaign);
     module.def("study_plain", &study_plain);
-    module.def("simulate_study", &study_simulated);
 }

@@ -22,9 +22,9 @@ def message(error):
 @pytest.mark.parametrize(
     ("change", "field", "words"),
     [
-        ({"k": 0}, "poses", "poses"),
-        ({"k": 3.5}, "poses", "poses"),
-        ({"k": "x"}, "poses", "poses"),
+        ({"k": 0}, "k", "k: is 0"),
+        ({"k": 3.5}, "k", "whole number"),
+        ({"k": "x"}, "k", "whole number"),
         ({"k": 41}, None, "40"),
         ({"k": 6, "criterion": "z"}, "criterion", "'z'"),
         ({"k": 6, "rows": 2}, "rows", "3 rows"),
@@ -33,14 +33,24 @@ def message(error):
         ({"k": 6, "prior": np.ones(7)}, "prior", "8 standard deviations"),
         ({"k": 6, "prior": -np.ones(8)}, "prior", "above 0"),
         ({"k": 6, "prior": -np.eye(8)}, "prior", "positive definite"),
-        ({"k": 6, "random": 5}, "candidates", "campaign"),
+        ({"k": 6, "random": 5}, "random", "campaign"),
         ({"k": 6, "threads": 0}, "threads", "from 1"),
         ({"k": 6, "threads": "2"}, "threads", "whole number"),
         ({"k": 6, "rows": "3"}, "rows", "whole number"),
         ({"k": 6, "time": -1}, "time", "from 0.001"),
         ({"k": 6, "seed": -1}, "seed", "seed"),
         ({"k": 6, "proof": float("nan")}, "proof", "nan"),
-        ({"k": 6, "groups": [1, 2]}, None, "group"),
+        ({"k": 6, "groups": [1, 2], "per_group": 1}, None, "group"),
+        ({"k": 6, "groups": pd.DataFrame({"a": range(40)}), "per_group": 1}, "groups", "list"),
+        ({"k": 6, "groups": [1, None] * 20, "per_group": 1}, "groups", "missing"),
+        ({"k": 6, "exclude": "23"}, "exclude", "['23']"),
+        ({"k": 6, "exclude": [True]}, "exclude", "True"),
+        ({"k": 6, "held": [[1, 2], [3]]}, "held", "numbers"),
+        ({"k": 6, "held": np.ones((4, 8)), "rows": None}, "held", "4 rows"),
+        ({"k": 6, "threads": 10**9}, "threads", "100000"),
+        ({"k": 6, "progress": 2}, "progress", "function"),
+        ({"k": 6, "criterion": "\ud800"}, "criterion", "no number or text"),
+        ({"k": 6, "estimate": 3}, "estimate", "posewise.Estimate"),
         ({"k": 6, "exclude": [99]}, None, "99"),
         ({"k": 2}, None, "8"),
     ],
@@ -81,6 +91,90 @@ def test_every_layout_gives_the_same(blocks):
     )
 
 
+def test_masked_numbers_are_refused(blocks, fanuc):
+    masked = np.ma.masked_array(blocks, mask=np.arange(40)[:, None, None] + np.zeros((1, 3, 8)) == 7)
+    with pytest.raises(pw.InputError, match="masked"):
+        pw.select(masked, 6)
+    with pytest.raises(pw.InputError, match="masked"):
+        fanuc.jacobian(np.ma.masked_less(np.zeros((2, 6)), 1))
+    assert pw.select(np.ma.masked_array(blocks), 6) == pw.select(blocks, 6)
+
+
+def test_a_prior_is_no_pose(blocks):
+    for prior in (True, np.ones(8), np.eye(8)):
+        for held in (None, blocks[30:33]):
+            choice = pw.select(blocks, 6, criterion="o1", prior=prior, held=held)
+            rated = pw.indices(blocks, choice.poses, prior=prior, held=held)
+            assert choice.value == pytest.approx(rated["o1"], rel=1e-12)
+            assert choice.verify()["is_right"].all()
+            poses = 6 if held is None else 9
+            stacked = blocks[choice.poses].reshape(-1, 8)
+            known = np.eye(8) if held is None else np.eye(8) + information(held)
+            expected = np.linalg.det(stacked.T @ stacked + known) ** (1 / 16) / np.sqrt(poses)
+            assert choice.value == pytest.approx(expected, rel=1e-9)
+
+
+def test_masks_of_poses(blocks):
+    mask = np.arange(40) % 4 == 0
+    pd.testing.assert_series_equal(pw.indices(blocks, mask), pw.indices(blocks, np.flatnonzero(mask)))
+    with pytest.raises(pw.InputError, match="mask"):
+        pw.indices(blocks, mask[:5])
+    with pytest.raises(pw.InputError, match="poses"):
+        pw.indices(blocks, [-1])
+
+
+needless = [
+    ("select", {"groups": [1]}, "per_group"),
+    ("select", {"per_group": 2}, "groups"),
+    ("select", {"as_prior": True}, "estimate"),
+    ("select", {"only": ["base"]}, "estimate"),
+    ("select", {"moved": ["base"]}, "estimate"),
+    ("select", {"repeats": 3}, "campaign"),
+    ("select", {"focus": "robot"}, "campaign"),
+    ("select", {"force": True}, "estimate"),
+    ("plan", {"quantity": "p95"}, "target_mm"),
+    ("plan", {"assurance": 0.9}, "target_mm"),
+    ("plan", {"robust_to": 1}, "minutes"),
+    ("plan", {"poses_at_most": 9}, "minutes"),
+    ("plan", {"drop": ["p1"]}, "repair"),
+    ("plan", {"target_mm": 1}, "poses"),
+    ("plan", {"workspace": np.zeros((1, 6)), "workspace_box_mm": [0] * 6}, "workspace_box_mm"),
+    ("calibrate", {"points_unit": "mm"}, "plan"),
+    ("calibrate", {"refit": ["base"]}, "validate"),
+    ("calibrate", {"loss_width": 2}, "loss"),
+    ("calibrate", {"limit_mm": 1}, "validate"),
+    ("calibrate", {"loss": "huber", "method": "global"}, "method"),
+    ("study", {"splits": 3}, "measurements"),
+    ("study", {"exclude": [1]}, "measurements"),
+    ("study", {"rows": 3}, "Jacobians"),
+]
+
+
+@pytest.mark.parametrize(("function", "keywords", "other"), needless)
+def test_keywords_without_effect(fanuc, measurements, blocks, function, keywords, other):
+    source = {"select": (blocks, 5), "plan": (fanuc, 14), "calibrate": (fanuc, measurements),
+              "study": (fanuc,)}[function]
+    with pytest.raises(pw.InputError) as error:
+        getattr(pw, function)(*source, **keywords)
+    assert error.value.field in keywords or error.value.field == "poses"
+    assert all(f"`{name}" in message(error) for name in list(keywords)[:1]) and other in message(error)
+
+
+def test_a_prior_beside_no_prior(fanuc, measurements):
+    estimate = pw.calibrate(fanuc, measurements, folds=0)
+    with pytest.raises(pw.InputError, match="`as_prior` excludes `prior=False`"):
+        pw.plan(fanuc, 14, estimate=estimate, as_prior=True, prior=False)
+    with pytest.raises(pw.InputError, match="trials"):
+        pw.study(fanuc, measurements, trials=3)
+
+
+@pytest.mark.parametrize("name", ["exclude", "free", "refit", "only", "moved"])
+def test_a_text_is_no_list_of_names(fanuc, measurements, name):
+    with pytest.raises(pw.InputError, match=r"list of names: \['23'\]") as error:
+        pw.calibrate(fanuc, measurements, **{name: "23"})
+    assert error.value.field == name
+
+
 def test_priors(blocks):
     alone = pw.select(blocks, 2, criterion="a", prior=np.full(8, 0.5))
     assert alone.value == pytest.approx(
@@ -112,6 +206,41 @@ def test_tables_with_wrong_columns(fanuc, measurements):
         pw.calibrate(fanuc, measurements.assign(q1_rad="x"))
     with pytest.raises(pw.InputError, match="q3"):
         fanuc.jacobian(measurements.drop(columns="q3_rad"))
+
+
+def test_tables_that_are_none(fanuc, measurements):
+    levels = measurements.set_axis(pd.MultiIndex.from_product([measurements.columns, ["a"]]), axis=1)
+    with pytest.raises(pw.InputError, match="levels"):
+        pw.calibrate(fanuc, levels)
+    with pytest.raises(pw.InputError, match="complex numbers in q1_rad"):
+        pw.calibrate(fanuc, measurements.assign(q1_rad=measurements["q1_rad"] + 1j))
+    with pytest.raises(pw.InputError, match="q1_rad"):
+        fanuc.jacobian(measurements.assign(q1_rad=measurements["q1_rad"] + 1j))
+    with pytest.raises(pw.InputError, match="surrogates"):
+        pw.calibrate(fanuc, measurements.assign(config="\ud800"))
+    for wrong in ("x", 3, None, object()):
+        for call in (lambda: pw.plan(wrong, 14), lambda: pw.calibrate(wrong, measurements),
+                     lambda: pw.Plan.read("x", wrong), lambda: pw.select(wrong, 5)):
+            with pytest.raises(pw.InputError):
+                call()
+
+
+def test_configurations_may_be_arrays(fanuc):
+    q = np.random.default_rng(2).uniform(-0.3, 0.3, (30, 6))
+    table = pd.DataFrame(q, columns=[f"{joint}_rad" for joint in fanuc.joints])
+    chosen = pw.select(fanuc, 12, candidates=q)
+    assert chosen.ids == pw.select(fanuc, 12, candidates=table).ids
+    with pytest.raises(pw.InputError, match=r"\(poses, 6\)"):
+        pw.select(fanuc, 12, candidates=q[:, :5])
+
+
+def test_a_study_has_the_same_columns_whatever_is_known(blocks, fanuc):
+    with_random = pw.study(blocks, poses=[4, 6], random=5, subsets={"mine": [0, 1, 2, 3]})
+    without = pw.study(blocks, poses=[4, 6], random=0, subsets={"mine": [0, 1, 2, 3]})
+    assert list(with_random.table.columns) == list(without.table.columns)
+    assert without.table["random_value_p50"].isna().all()
+    of_robot = [pw.study(fanuc, poses=12, trials=2, pool=40, random=n) for n in (0, 2)]
+    assert list(of_robot[0].table.columns) == list(of_robot[1].table.columns)
 
 
 def test_other_units_and_indices_give_the_same(fanuc, measurements):
