@@ -9,7 +9,6 @@
 #include "io/format/atomic_file.hpp"
 #include "page.hpp"
 #include "plot.hpp"
-#include "posewise/core/errors.hpp"
 #include "posewise/io/documents.hpp"
 #include "posewise/report/reports.hpp"
 #include "report/plot.hpp"
