@@ -240,12 +240,13 @@ TEST(ReadMeasurementsCsv, PassesOverColumnsThatNobodyAskedFor) {
     std::string text;
     std::istringstream lines(good);
     for (std::string line; std::getline(lines, line);) {
-        text +=
-            text.empty() ? "clock," + line + ",operator,p1_rms_mm,\n" : "12:00," + line + ",me,x,\n";
+        text += text.empty() ? "clock," + line + ",operator,p1_rms_mm,\n"
+                             : "12:00," + line + ",me,x,\n";
     }
     const TemporaryFolder folder;
     const MeasurementsFile file = read_measurements_csv(folder.write("m.csv", text), crane());
-    EXPECT_EQ(file.unused_columns, (std::vector<std::string>{"clock", "operator", "p1_rms_mm", ""}));
+    EXPECT_EQ(file.unused_columns,
+              (std::vector<std::string>{"clock", "operator", "p1_rms_mm", ""}));
     expect_equal(file, read(good));
     EXPECT_TRUE(read_measurements_csv(folder.write("m.csv", good), crane()).unused_columns.empty());
 }
@@ -260,7 +261,8 @@ TEST(BadMeasurementsCsv, Misspelt) {
          "need 'pose'"},
         {"config,sample", "confg,time", "1:1: column 'confg' is unknown; did you mean 'config'?"},
         {"sample,q1_rad", "clock,elbow",
-         "1:74: missing column q1_rad; the header must have [...]p2_z_mm, and does not need 'clock' "
+         "1:74: missing column q1_rad; the header must have [...]p2_z_mm, and does not need "
+         "'clock' "
          "or 'elbow'"},
         {"sample", "q4_rad",
          "1:8: column 'q4_rad' is unknown, the campaign's robot has 3 joints; [...]"},
