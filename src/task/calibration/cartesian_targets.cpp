@@ -88,9 +88,10 @@ std::vector<Isometry3d> corrected_targets(const CorrectedPoses& corrected,
         const VectorXd& q = corrected.corrections[k].joints;
         const VectorXd nominal = corrected.nominal.row(static_cast<Index>(k)).transpose();
         if (side_of(robot, q) != side_of(robot, nominal)) {
-            throw target_error(corrected.ids[k],
-                           "is at a singular pose, where its configuration would change; must be "
-                           "moved away, or be stated by joint values");
+            throw target_error(
+                corrected.ids[k],
+                "is at a singular pose, where its configuration would change; must be "
+                "moved away, or be stated by joint values");
         }
         targets.push_back(frames.base_from_frame.inverse() * robot.base_from_flange(q, no_errors) *
                           frames.flange_from_tool);
