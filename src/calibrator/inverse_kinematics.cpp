@@ -26,7 +26,7 @@ bool is_reached(const PoseError& left) {
 class InverseSearch {
   public:
     InverseSearch(const Chain& robot, const VectorXd& parameters, const Isometry3d& wanted,
-           const VectorXd& seed, const InverseOptions& options)
+                  const VectorXd& seed, const InverseOptions& options)
         : robot_(robot), parameters_(parameters), wanted_(wanted), seed_(seed), options_(options) {
         // Nothing but the joint limits holds a joint.
         for (const Joint& joint : robot.joints()) {

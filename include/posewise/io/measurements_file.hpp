@@ -17,7 +17,7 @@ namespace posewise::io {
 /// Measurements as a file has them.
 struct MeasurementsFile : Measurements {
     std::vector<std::string> unused_columns = {};  ///< names of columns that nothing is known about
-    bool is_joined = false;   ///< from points and a plan
+    bool is_joined = false;                        ///< from points and a plan
     std::string joined = {};  ///< if so: which points are missing, in words; empty: none
     /// By the columns time or time_s, in h since the first, and temperature_C; means of each
     /// configuration's samples. Columns that cannot be read all are among `unused_columns`.
