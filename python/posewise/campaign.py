@@ -6,7 +6,7 @@ import json
 import os
 import tempfile
 import zlib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Union
@@ -225,7 +225,7 @@ class Campaign:
                 {key: value for key, value in row.items() if np.ndim(value) or pd.notna(value)}
                 for row in rows.to_dict("records")
             ]
-        if isinstance(rows, (str, bytes, Mapping)) or not isinstance(rows, Iterable):
+        if not isinstance(rows, Sequence) or isinstance(rows, (str, bytes)):
             raise InputError(f"`rows` is {shortened(rows)}; must be a list of dicts, or a DataFrame")
         table = {"convention": convention, "rows": [_section(row, "rows") for row in rows]}
         stated = {"dh": table, **_section(robot, "robot")}

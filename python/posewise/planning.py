@@ -103,7 +103,9 @@ class Plan(Result):
             result = _posewise.verify(plan, self.campaign._core, [])
         return findings(result[0])
 
-    def write(self, path: FilePath, *, csv: FilePath = "", targets: FilePath = "") -> None:
+    def write(
+        self, path: FilePath, *, csv: FilePath | None = None, targets: FilePath | None = None
+    ) -> None:
         """Writes the plan file, and its configurations and targets as tables; all or none.
 
         It names the files that the plan was made from. What was given in memory is written beside
@@ -113,7 +115,9 @@ class Plan(Result):
         paths = {name: one.beside(target, name) for name, one in self._inputs.items()}
         paths["campaign"] = self.campaign.beside(target)
         tables = {
-            name: check_path(one, name) for name, one in (("csv", csv), ("targets", targets)) if one
+            name: check_path(one, name)
+            for name, one in (("csv", csv), ("targets", targets))
+            if one is not None
         }
         with Files() as files:
             self._write(files, str(target), paths, **tables)

@@ -43,6 +43,8 @@ class Setting:
 
     def __init__(self, folder):
         self.folder = folder
+        (folder / "two.urdf").write_text(urdf)
+        self.urdf = str(folder / "two.urdf")
         base = {"position_mm": [0, 0, 0], "rpy_deg": [0, 0, 0]}
         self.campaign = pw.Campaign.from_urdf(
             urdf, tip="c", sensor=tracker, robot={**robot, "base_link": "a"}, base=base
@@ -109,7 +111,8 @@ class Setting:
             (pw.Estimate.read, [e, c], {}),
             (pw.Plan.read, [p, c], {}),
             (pw.Campaign.from_yaml, [self.files[2]], {}),
-            (pw.Campaign.from_dict, [{"name": "x", "robot": {**robot, "urdf": urdf}, "sensor": tracker}], {}),
+            (pw.Campaign.from_dict, [{"name": "x", "robot": {**robot, "urdf": self.urdf}, "sensor": tracker}],
+             {}),
             (pw.Campaign.from_urdf, [urdf], {"base": "a", "tip": "c", "sensor": tracker, "robot": robot,
                                              "name": "r", "model_error_mm": 0.1}),
             (pw.Campaign.from_dh, [[{"a_mm": 9, "alpha_deg": 90, "d_mm": 300, "theta_deg": 0,
@@ -117,7 +120,7 @@ class Setting:
              {"sensor": tracker, "robot": robot, "convention": "modified"}),
             (pw.Sensor, [lambda frame, unknowns: frame[:3, 3], ["x_m", "y_m", "z_m"], 1e-4], {}),
             (self.estimate.write, [e], {}),
-            (self.plan.write, [p], {"csv": str(self.folder / "p.csv"), "targets": str(self.folder / "t.csv")}),
+            (self.plan.write, [p], {"csv": str(self.folder / "p.csv")}),
             (self.choice.write, [str(self.folder / "choice.json")], {}),
         ]
 
@@ -233,15 +236,22 @@ def draw(setting, seed):
     rng = np.random.default_rng(seed)
     calls = setting.calls()
     function, arguments, keywords = calls[seed % len(calls)]
-    taken = {key: value for key, value in keywords.items() if rng.random() < 2.5 / max(len(keywords), 3)}
-    if function is pw.plan:
-        taken = {"pool": 60, "workspace_poses": 10, "starts": 1, **taken}
-    if function is pw.study and "random" not in taken:
-        taken["random"] = 2
+    taken = {key: value for key, value in keywords.items() if rng.random() < 1.5 / max(len(keywords), 2)}
+    needed = {
+        pw.plan: {"pool": 60, "workspace_poses": 10, "starts": 1},
+        pw.study: {"random": 2, "poses": [8]},
+        pw.calibrate: {"force": True},
+        pw.Campaign.from_urdf: {"sensor": tracker, "tip": "c"},
+        pw.Campaign.from_dh: {"sensor": tracker},
+    }.get(function, {})
+    if function is pw.select and not {"random", "measurements", "candidates"} & set(taken):
+        needed = {"random": 30} if isinstance(arguments[0], pw.Campaign) else {}
+    if "workspace" in taken or "workspace_box_mm" in taken:
+        needed = {"pool": 60, "starts": 1}
+    taken = {**needed, **taken}
     places = [*range(len(arguments)), *taken]
-    for place in places:
-        if rng.random() > 0.5:
-            continue
+    wrong = rng.permutation(len(places))[: rng.choice([0, 1, 1, 1, 2])]
+    for place in [places[i] for i in wrong]:
         if isinstance(place, int):
             arguments[place] = odd_value(rng, arguments[place])
         else:
