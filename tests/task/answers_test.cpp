@@ -43,6 +43,32 @@ TEST_F(ResidualAnswers, FindDriftWhereThereIsSome) {
     EXPECT_LT(trend.worst().detectable, 4e-4);
 }
 
+TEST_F(ResidualAnswers, FindWhatFollowsATemperature) {
+    RowMatrixXd residuals = measure(30);
+    Condition temperature{"temperature", "C", {}};
+    Condition same{"time", "h", {}};
+    RandomStream stream(9);
+    for (std::size_t i = 0; i < 30; ++i) {
+        const double degrees = stream.uniform(20, 24);  // in no order
+        if (i != 7) temperature.values[measurements_.ids[i]] = degrees;
+        same.values[measurements_.ids[i]] = 3;
+        residuals.middleRows(3 * static_cast<Index>(i), 3).col(1).array() += 2e-4 * (degrees - 22);
+    }
+    const auto trends =
+        detail::find_condition_trends(campaign_, measurements_, residuals, {same, temperature});
+    ASSERT_EQ(trends.size(), 1U);  // what is the same everywhere is left out
+    EXPECT_EQ(trends[0].unit, "C");
+    EXPECT_GT(trends[0].range, 3);
+    const OrderSlope& worst = trends[0].trend.worst();
+    EXPECT_EQ(worst.axis, "y");
+    EXPECT_TRUE(trends[0].trend.is_plain());
+    EXPECT_NEAR(worst.change / trends[0].range, 2e-4, 3e-5);
+    EXPECT_FALSE(trend_of(residuals).is_plain());
+    temperature.values.erase(std::next(temperature.values.begin(), 3), temperature.values.end());
+    EXPECT_TRUE(
+        detail::find_condition_trends(campaign_, measurements_, residuals, {temperature}).empty());
+}
+
 TEST_F(ResidualAnswers, HardlyEverFindDriftWhereThereIsNone) {
     Index plain = 0, possible = 0;
     constexpr Index campaigns = 400;

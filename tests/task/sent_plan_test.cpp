@@ -205,6 +205,8 @@ TEST(Route, GoesBackWhereNothingIsInTheWay) {
                   route_of(plan, campaign, joints, thousandth);
               }).find("the way from home to pose 'p1' is not free"),
               std::string::npos);
+    // Unless a way may be looked for.
+    EXPECT_EQ(route_of(plan, campaign, joints, thousandth, {1, false, true}).size(), 5U);
     Plan around = plan;
     around.poses[0].via = at(0, -30, 0, 0, 0, 0);
     const std::vector<RouteStop> route = route_of(around, campaign, joints, thousandth);
@@ -217,6 +219,32 @@ TEST(Route, GoesBackWhereNothingIsInTheWay) {
             EXPECT_GT(constraints.collision_clearance(q), -1e-3);
         }
     }
+}
+
+TEST(SentPlan, VisitsAReferencePoseAgain) {
+    std::vector<VectorXd> poses;
+    for (int k = 0; k < 7; ++k) poses.push_back(at(5 * k, -20, 0, 0, 0, 0));
+    Plan plan = plan_of(cell_campaign(), poses);
+    for (PlannedPose& pose : plan.poses) pose.via = poses[0];
+    const auto ids = [&](const std::string& reference, Index every) {
+        std::string text;
+        for (const PlannedPose& pose : with_revisits(plan, reference, every).poses) {
+            text += pose.id + ' ';
+        }
+        return text;
+    };
+    EXPECT_EQ(ids("p3", 2), "p1 p2 ref1 p3 p4 p5 ref2 p6 p7 ref3 ");
+    EXPECT_EQ(ids("p7", 10), "p1 p2 p3 p4 p5 p6 p7 ");
+    EXPECT_EQ(ids("p1", 100), "p1 p2 p3 p4 p5 p6 p7 ref1 ");
+    const Plan visited = with_revisits(plan, "p3", 2);
+    EXPECT_EQ(visited.poses[2].configuration, poses[2]);
+    EXPECT_TRUE(visited.poses[1].via);
+    EXPECT_FALSE(visited.poses[2].via || visited.poses[3].via);  // ways of other moves
+    EXPECT_NE(message_of([&] { with_revisits(plan, "p9", 2); }).find("called 'p9'"),
+              std::string::npos);
+    plan.poses[0].id = "ref2";
+    EXPECT_NE(message_of([&] { with_revisits(plan, "p3", 2); }).find("has a pose called 'ref2'"),
+              std::string::npos);
 }
 
 TEST(SentPlan, PutsAChoiceInTheOrderOfATour) {
