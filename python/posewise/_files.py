@@ -147,14 +147,14 @@ class Files(AbstractContextManager["Files"]):
         if isinstance(error, _posewise.InputError):
             spoken(error, self._names)
 
-    def spoken(self, sentences: list[str]) -> list[str]:
-        """Warnings that name arguments, too."""
-        found = []
-        for sentence in sentences:
-            for path, name in self._names.items():
-                sentence = sentence.replace(path, name)
-            found.append(with_keywords(sentence))
-        return found
+    def named(self, result: tuple[str, str, list[str]]) -> tuple[str, str, list[str]]:
+        """Document, text and warnings of a call, which name arguments, too."""
+        document, text, sentences = result
+        for path, name in self._names.items():
+            document = document.replace(path, name)
+            text = text.replace(path, name)
+            sentences = [one.replace(path, name) for one in sentences]
+        return document, text, [with_keywords(one) for one in sentences]
 
 
 # ---- Tables ----

@@ -290,9 +290,8 @@ def calibrate(
     options = call_options(threads, time, progress)
     with Files() as files:
         stated = as_json("calibrate", {**keywords, **files.open(inputs)})
-        result = _posewise.calibrate(campaign._core, stated, options)
-        doubts = files.spoken(result[2])
-    found = Estimate(campaign, result[0], result[1], doubts, inputs, keywords)
+        document, text, doubts = files.named(_posewise.calibrate(campaign._core, stated, options))
+    found = Estimate(campaign, document, text, doubts, inputs, keywords)
     return made(found, doubts, options)
 
 

@@ -430,12 +430,12 @@ def _made(
     options: Any,
 ) -> Choice:
     campaign = source._core.path if isinstance(source, Campaign) else None
-    document = with_sources(json.loads(result[0]), {**as_stated(inputs), "campaign": campaign})
+    stated, text, doubts = files.named(result)
+    document = with_sources(json.loads(stated), {**as_stated(inputs), "campaign": campaign})
     document.pop("plan_file", None)
-    doubts = files.spoken(result[2])
     if document["search"]["stop_reason"] in ("interrupted", "time limit"):
         doubts.append("stopped early; the choice is the best so far")
-    return made(Choice(document, result[1], doubts, source, inputs, labels or []), doubts, options)
+    return made(Choice(document, text, doubts, source, inputs, labels or []), doubts, options)
 
 
 def design(X: npt.ArrayLike, k: int, **keywords: Any) -> Choice:

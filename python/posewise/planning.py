@@ -238,11 +238,9 @@ def plan(
     options = call_options(threads, time, progress)
     with Files() as files:
         stated = as_json("plan", {**keywords, **files.open(inputs)})
-        result = _posewise.plan(campaign._core, stated, options)
-        doubts = files.spoken(result[2])
+        document, text, doubts = files.named(_posewise.plan(campaign._core, stated, options))
     inputs.pop("repair", None)  # its poses are in the plan
-    document = with_sources(
-        json.loads(result[0]), {**as_stated(inputs), "campaign": campaign._core.path}
-    )
-    document.pop("plan_file", None)
-    return made(Plan(campaign, document, result[1], doubts, inputs), doubts, options)
+    stated_by: dict[str, str | None] = {**as_stated(inputs), "campaign": campaign._core.path}
+    found = with_sources(json.loads(document), stated_by)
+    found.pop("plan_file", None)
+    return made(Plan(campaign, found, text, doubts, inputs), doubts, options)

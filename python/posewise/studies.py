@@ -229,5 +229,5 @@ def study(
             inputs = given({"measurements": table(measurements, "measurements")})
             stated = {**keywords, "test_poses": test_poses, **files.open(inputs)}
             result = _posewise.study(source._core, as_json("study", stated), options)
-        doubts = files.spoken(result[2])
-    return made(Study(json.loads(result[0]), result[1], doubts), doubts, options)
+        document, text, doubts = files.named(result)
+    return made(Study(json.loads(document), text, doubts), doubts, options)

@@ -364,3 +364,13 @@ def test_warnings_point_at_the_caller(fanuc, measurements, recwarn):
     pw.calibrate(fanuc, measurements.assign(note=1), folds=0)
     pw.select(fanuc, 12, measurements=measurements.assign(note=1), starts=1)
     assert len(recwarn) >= 2 and {one.filename for one in recwarn} == {__file__}
+
+
+def test_a_repaired_plan_says_what_was_kept(fanuc):
+    plan = pw.plan(fanuc, 14, pool=100, workspace_poses=30)
+    dropped = plan.document["poses"][0]["id"]
+    repaired = pw.plan(fanuc, repair=plan, drop=[dropped], pool=100, workspace_poses=30)
+    assert len(repaired) == 14 and "13 kept" in str(repaired)
+    assert not any("/posewise" in one for one in (str(repaired), str(repaired.document)))
+    with pytest.raises(pw.InputError, match="kept of repair"):
+        pw.plan(fanuc, 5, repair=plan, pool=100, workspace_poses=30)
