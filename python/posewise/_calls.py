@@ -7,7 +7,7 @@ import re
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, NoReturn, TypeVar, Union
+from typing import Any, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -64,18 +64,22 @@ _keywords = {
 }
 
 
-def with_keywords(message: str) -> str:
-    """The message with arguments of Python in place of the library's fields."""
+# How messages begin about arguments that they do not name.
+_beginnings = {
+    "pose count is": "`poses` is",
+    "excluded candidate": "`exclude`:",
+    "test poses are": "`test_poses` are",
+    "groups has": "`groups` has",
+}
+
+
+def with_keywords(message: str, count: str = "poses") -> str:
+    """The message with arguments of Python in place of the library's fields; ``count`` is what the
+    call names its number of poses."""
+    for beginning, words in _beginnings.items():
+        message = re.sub(rf"^([^`]*: )?{beginning}", lambda m: (m.group(1) or "") + words, message)
     message = re.sub(r"`([\w.]+)`", lambda m: f"`{_keywords.get(m.group(1), m.group(1))}`", message)
-    return message.replace("select(): poses", "select(): k")
-
-
-def spoken(error: Exception, names: Mapping[str, str] | None = None) -> NoReturn:
-    """Raises what a user of Python can do something about, in place of the library's error."""
-    message = str(error)
-    for path, name in (names or {}).items():
-        message = message.replace(path, name)
-    raise InputError(with_keywords(message)) from None
+    return message.replace("`poses`", f"`{count}`").replace("(): poses", f"(): {count}")
 
 
 def warn(sentences: Iterable[str]) -> None:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from . import _posewise
-from ._calls import InputError, check_text, numbers, shortened, spoken, with_keywords
+from ._calls import InputError, check_text, numbers, shortened, with_keywords
 
 FilePath = Union[str, "os.PathLike[str]"]
 Table = Union[pd.DataFrame, str, "os.PathLike[str]"]
@@ -114,10 +114,12 @@ def read_text(path: FilePath, what: str) -> str:
 class Files(AbstractContextManager["Files"]):
     """Tables and documents as files for one call of the library.
 
-    Messages then name an argument instead of the file that it was written to.
+    Messages then name an argument instead of the file that it was written to; ``count`` is what the
+    call names its number of poses.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, count: str = "poses") -> None:
+        self._count = count
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._names: dict[str, str] = {}
 
@@ -145,7 +147,10 @@ class Files(AbstractContextManager["Files"]):
         if self._folder is not None:
             self._folder.cleanup()
         if isinstance(error, _posewise.InputError):
-            spoken(error, self._names)
+            message = str(error)
+            for path, name in self._names.items():
+                message = message.replace(path, name)
+            raise InputError(with_keywords(message, self._count)) from None
 
     def named(self, result: tuple[str, str, list[str]]) -> tuple[str, str, list[str]]:
         """Document, text and warnings of a call, which name arguments, too."""
@@ -154,7 +159,7 @@ class Files(AbstractContextManager["Files"]):
             document = document.replace(path, name)
             text = text.replace(path, name)
             sentences = [one.replace(path, name) for one in sentences]
-        return document, text, [with_keywords(one) for one in sentences]
+        return document, text, [with_keywords(one, self._count) for one in sentences]
 
 
 # ---- Tables ----

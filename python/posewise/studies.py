@@ -13,12 +13,13 @@ import numpy.typing as npt
 import pandas as pd
 
 from . import _posewise
+from ._blocks import Prior, campaign_prior, make_blocks, pose_indices, prior_flag
 from ._calls import InputError, Progress, as_json, call_options, check_text, made, names, shortened
 from ._files import Files, Table, given, table
 from ._keywords import check_keywords
 from ._results import Result
 from .campaign import Campaign
-from .choice import Prior, campaign_prior, make_blocks, pose_indices, prior_flag
+
 
 
 @dataclass(frozen=True)

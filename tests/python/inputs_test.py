@@ -25,7 +25,7 @@ def message(error):
         ({"k": 0}, "k", "k: is 0"),
         ({"k": 3.5}, "k", "whole number"),
         ({"k": "x"}, "k", "whole number"),
-        ({"k": 41}, None, "40"),
+        ({"k": 41}, "k", "40"),
         ({"k": 6, "criterion": "z"}, "criterion", "'z'"),
         ({"k": 6, "rows": 2}, "rows", "3 rows"),
         ({"k": 6, "held": np.ones((2, 3, 7))}, "held", "8, as J"),
@@ -40,7 +40,7 @@ def message(error):
         ({"k": 6, "time": -1}, "time", "from 0.001"),
         ({"k": 6, "seed": -1}, "seed", "seed"),
         ({"k": 6, "proof": float("nan")}, "proof", "nan"),
-        ({"k": 6, "groups": [1, 2], "per_group": 1}, None, "group"),
+        ({"k": 6, "groups": [1, 2], "per_group": 1}, "groups", "40"),
         ({"k": 6, "groups": pd.DataFrame({"a": range(40)}), "per_group": 1}, "groups", "list"),
         ({"k": 6, "groups": [1, None] * 20, "per_group": 1}, "groups", "missing"),
         ({"k": 6, "exclude": "23"}, "exclude", "['23']"),
@@ -51,8 +51,8 @@ def message(error):
         ({"k": 6, "progress": 2}, "progress", "function"),
         ({"k": 6, "criterion": "\ud800"}, "criterion", "no number or text"),
         ({"k": 6, "estimate": 3}, "estimate", "posewise.Estimate"),
-        ({"k": 6, "exclude": [99]}, None, "99"),
-        ({"k": 2}, None, "8"),
+        ({"k": 6, "exclude": [99]}, "exclude", "99"),
+        ({"k": 2}, "k", "8"),
     ],
 )
 def test_wrong_arguments_of_select(blocks, change, field, words):
