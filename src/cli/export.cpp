@@ -80,7 +80,8 @@ io::ExportedRobot make_geometries(const ExportArguments& arguments, const io::Ca
 io::ExportedRobot make_robot(const ExportArguments& arguments, const io::CampaignFile& file,
                              const Parameters& found) {
     io::ExportedRobot robot = make_geometries(arguments, file, found);
-    robot.is_nearest = robot.nearest && arguments.geometry == "nearest";
+    robot.is_nearest =
+        robot.nearest && arguments.geometry == "nearest" && arguments.paths.map.empty();
     const Chain& chain = robot.written().robot;
     const VectorXd& errors = robot.written().errors;
     const ExportPaths& paths = arguments.paths;

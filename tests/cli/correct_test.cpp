@@ -204,7 +204,7 @@ TEST_F(Correct, ReplacesThePlacesOfAProgram) {
         "0], q)\nend\n";
     write_text("weld.script", program);
     const Outcome outcome = run(correct_ +
-                                "weld.script --for ur --cartesian --near 0,0,0,0,-20,0 "
+                                "weld.script --for ur --cartesian --near 7,-5,-22,-88,7,86 "
                                 "-o corrected.script");
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("2 targets corrected"), std::string::npos) << outcome.out;

@@ -73,7 +73,7 @@ std::string c_term(const MapTerm& term, Index joints) {
     for (const double order : orders) text += fmt::format("{:.12g},", order);
     text.back() = '}';
     text += ",{";
-    for (const double amount : term.amounts) text += fmt::format("{:.10g},", amount);
+    for (const double amount : term.amounts) text += fmt::format("{:.10g},", amount + 0.0);
     text.back() = '}';
     return text + "},\n";
 }
@@ -158,7 +158,7 @@ std::string csv_text(const std::string& title, const CorrectionMap& map) {
                        factor_text(factor, map.robot.joint(factor.joint).name);
         }
         text += detail::csv_field(factors.empty() ? "1" : factors);
-        for (const double amount : term.amounts) text += fmt::format(",{:.10g}", amount);
+        for (const double amount : term.amounts) text += fmt::format(",{:.10g}", amount + 0.0);
         text += '\n';
     }
     return text;
