@@ -355,6 +355,21 @@ def check_export():
                  number_behind(pathlib.Path("k.yaml").read_text(), "forearm:\n    x: "), 12), "export: frames")
 
 
+def check_conditions():
+    pathlib.Path("noted.yaml").write_text(ARM.replace("geometric", "full") + "record: {operator: me}\n")
+    run("simulate", "noted.yaml", "-k", 20, "-o", "plain.csv")
+    rows = [row for row in pathlib.Path("plain.csv").read_text().splitlines() if not row.startswith("#")]
+    noted = [rows[0] + ",time,temperature_C"] + [f"{row},{60 * k},{20 + k % 3}" for k, row in enumerate(rows[1:])]
+    pathlib.Path("noted.csv").write_text("\n".join(noted) + "\n")
+    document, text = both("calibrate", "noted.yaml", "-m", "noted.csv", "-o", "noted.json")
+    trends = document["accuracy"]["condition_trends"]
+    expect([(trend["name"], trend["unit"]) for trend in trends] == [("time", "h"), ("temperature", "C")], trends)
+    expect(trends[1]["range"] == 2 and document["record"] == {"operator": "me"} and "operator: me" in text, trends)
+    document, text = both("export", "noted.yaml", "noted.json", "--map", "map.csv")
+    expect(close(document["map"]["geometry_alone"]["rms_mm"], number_behind(text, "as the geometry has them"), 3),
+           "export: map")
+
+
 def check_report():
     run("simulate", CELL, "-k", 12, "--truth", 5, "-o", "cell.csv")
     run("calibrate", CELL, "-m", "cell.csv", "-o", "cell.json", "--folds", 3, "--prior")
@@ -419,7 +434,7 @@ with tempfile.TemporaryDirectory() as folder:
     pathlib.Path("arm.urdf").write_text(URDF)
     pathlib.Path("arm.yaml").write_text(ARM)
     for check in (check_simulate, check_inspect, check_indices, check_select, check_relax, check_verify,
-                  check_calibrate, check_study, check_blocks_study, check_plan, check_program, check_correct, check_export, check_report, check_writers,
+                  check_calibrate, check_study, check_blocks_study, check_plan, check_program, check_correct, check_export, check_conditions, check_report, check_writers,
                   check_errors, check_threads):
         check()
     expect(PRINTED | {""} == set(MANUAL), f"sections {sorted(MANUAL)}, printed {sorted(PRINTED)}")
