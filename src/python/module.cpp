@@ -217,7 +217,7 @@ Result plan_campaign(const io::CampaignFile& campaign, const std::string& keywor
         PlanningOptions options = read_planning(asked.request, file, warnings);
         const std::string& repaired = asked.request.sources.repaired;
         if (!repaired.empty()) options.repaired = io::read_plan(repaired);
-        options.richer = [&] { return io::richer_campaigns(file, prior); };
+        options.richer = [&] { return io::richer_campaigns(file, asked.prior); };
         control.steer(options);
         if (target) {
             const TargetPlanning found = plan_for_target(file, options, *target);
