@@ -128,7 +128,9 @@ class LocalSearch {
         const Index removed = choice_.poses[at];
         const Index added = shortlist_.members[static_cast<std::size_t>(by.position)];
         choice_.poses[at] = added;
-        const MatrixXd M = neighbourhood_.exchanged(removed, added);
+        // Exchange by exchange rounding would add up, and then count as gains without an end.
+        const MatrixXd M = by.is_certain ? neighbourhood_.exchanged(removed, added)
+                                         : problem_.regularised_information(choice_.poses);
         if (by.is_certain) {
             is_scored_ = false;
         } else if (const Score score = problem_.score(M); is_better(score, choice_.score)) {

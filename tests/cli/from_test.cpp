@@ -60,14 +60,18 @@ std::string copy_by_hand(const std::string& campaign, const Json& estimate, bool
     return text;
 }
 
-/// Less the lines that name files or estimates, and the bound that is searched only. Joints of a
-/// plan to a tenth of a degree: they are where a flat optimum was found.
+/// Less the lines that name files or estimates, the bound that is searched only, and the answer
+/// about errors left out, which an estimate has learned. Joints of a plan to a tenth of a degree:
+/// they are where a flat optimum was found.
 std::string without_names(const std::string& text) {
     static const std::regex hundredths(R"((\.\d)\d\b)");
     static const std::regex pose(R"(p\d+ .*)");
     std::istringstream lines(text);
     std::string kept;
+    bool is_left_out = false;
     for (std::string line; std::getline(lines, line);) {
+        is_left_out = line.starts_with("Errors left out") || (is_left_out && line.starts_with(' '));
+        if (is_left_out) continue;
         if (std::regex_match(line, pose)) line = std::regex_replace(line, hundredths, "$1");
         if (line.starts_with("from:") || line.starts_with("plan:")) continue;
         if (line.starts_with("searched:")) continue;

@@ -261,7 +261,7 @@ TEST(BadMeasurementsCsv, Misspelt) {
          "need 'pose'"},
         {"config,sample", "confg,time", "1:1: column 'confg' is unknown; did you mean 'config'?"},
         {"sample,q1_rad", "clock,elbow",
-         "1:74: missing column q1_rad; the header must have [...]p2_z_mm, and does not need "
+         "1:75: missing column q1_rad; the header must have [...]p2_z_mm, and does not need "
          "'clock' "
          "or 'elbow'"},
         {"sample", "q4_rad",

@@ -47,10 +47,10 @@ children = []
 def fork(done, total):
     if not children:
         children.append(os.fork())
-choice = pw.select(J[:400], 60, criterion="v", progress=fork)
+choice = pw.select(J[:100], 20, criterion="v", progress=fork)
 print(len(choice), os.waitstatus_to_exitcode(os.waitpid(children[0], 0)[1]))
 """)
-    assert (done.returncode, done.stdout) == (0, "60 1\n"), done.stderr
+    assert (done.returncode, done.stdout) == (0, "20 1\n"), done.stderr
     assert done.stderr.startswith("posewise: a process that was forked within a call")
 
 
@@ -91,7 +91,7 @@ def test_an_interrupt_ends_a_loop_over_calls_with_the_best_so_far():
 def test_an_interrupted_plan_is_the_best_so_far(fanuc):
     timer = interrupt_after(1.5)
     with pytest.raises(pw.Interrupted) as raised:
-        pw.plan(fanuc, 24, pool=200000, starts=1000)
+        pw.plan(fanuc, 24, pool=20000, starts=1000)
     timer.join()
     assert len(raised.value.result) == 24 and "stopped early" in raised.value.result.warnings[-1]
 
@@ -107,7 +107,7 @@ def test_an_interrupted_jacobian_is_no_loop(fanuc):
 
 def test_a_calibration_cut_by_time_says_so(fanuc, measurements):
     with pytest.warns(pw.Doubt, match="stopped early"):
-        estimate = pw.calibrate(fanuc, measurements, time=0.15, force=True, folds=24)
+        estimate = pw.calibrate(fanuc, measurements, time=0.02, force=True, folds=24)
     assert any("stopped early" in one for one in estimate.doubts)
     assert estimate.document["warnings"] == estimate.doubts
 
