@@ -27,7 +27,7 @@ constexpr const char* correct_footer = R"(
 Example:
   posewise correct campaign.yaml estimate.json --poses program.csv -o corrected.csv
   posewise correct campaign.yaml estimate.json --poses WELD.LS --for fanuc -o corrected/WELD.LS
-  posewise correct campaign.yaml estimate.json --poses holes.csv --cartesian --tool-mm 0,0,180 -o j.csv
+  posewise correct arm.yaml estimate.json --poses holes.csv --cartesian --tool-mm 0,0,180 -o j.csv
 
 For a controller that knows only the nominal robot: joint values that bring the calibrated robot (the
 estimate, from calibrate --out) to where the nominal robot would be at the configurations of the

@@ -120,7 +120,7 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
     {"plan a.yaml --plan p.json --drop p1,",
      "--drop: is 'p1,'; must be names separated by commas, none empty"},
     {"verify", "PLAN is required"},
-    {"export a.yaml b.json", "--urdf, --dh or --ur-kinematics is required"},
+    {"export a.yaml b.json", "--urdf, --dh, --ur-kinematics or --map is required"},
     {"export a.yaml b.json --dh c --geometry best", "--geometry: best not in {nearest,estimate}"},
     {"program a.json", "--for is required"},
     {"program a.json --for fanuc", "--out is required"},
