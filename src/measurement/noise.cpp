@@ -59,11 +59,7 @@ struct MotionShares {
     double translation = 1;
     double turn = 0;  ///< rad for 1 m at the targets
 };
-MotionShares shares_of(const Campaign& campaign, const TargetGroup& group) {
-    if (campaign.sensor->has_pixels()) {
-        const double turn = campaign.model_error_orientation;
-        return {1, campaign.model_error > 0 ? turn / campaign.model_error : 0};
-    }
+MotionShares shares_of(const TargetGroup& group) {
     if (!(group.lever > 0)) return {};  // all in one place, which no turn moves
     return {std::sqrt(0.5), std::sqrt(0.75) / group.lever};
 }
@@ -97,11 +93,11 @@ void check_noise(const Campaign& campaign) {
     }
 }
 
-TwistMatrix model_error_twists(const Campaign& campaign, const Isometry3d& world_from_flange,
+TwistMatrix model_error_twists(const Sensor& sensor, const Isometry3d& world_from_flange,
                                const VectorXd& sensor_unknowns) {
-    const TargetGroup group = group_of_targets(*campaign.sensor, sensor_unknowns);
+    const TargetGroup group = group_of_targets(sensor, sensor_unknowns);
     const Vector3d p = world_from_flange * group.middle;
-    const auto [translation, turn] = shares_of(campaign, group);
+    const auto [translation, turn] = shares_of(group);
     TwistMatrix twists = TwistMatrix::Zero(6, 6);
     for (Index k = 0; k < 3; ++k) {
         twists(3 + k, k) = translation;
@@ -112,7 +108,6 @@ TwistMatrix model_error_twists(const Campaign& campaign, const Isometry3d& world
 }
 
 double common_part(const Campaign& campaign) {
-    if (campaign.sensor->has_pixels()) return 1;
     if (campaign.sensor->seen_at_once() <= 1) return 0;
     return campaign.model_error_common.value_or(campaign.spread.is_prior ? usual_model_error_common
                                                                          : 0);
@@ -128,7 +123,6 @@ VectorXd own_model_errors(const Campaign& campaign) {
     for (Index row = 0; row < errors.size(); ++row) {
         errors[row] = campaign.sensor->is_angle(row) ? campaign.model_error_orientation : own;
     }
-    if (campaign.sensor->has_pixels()) errors.setZero();
     return errors;
 }
 
@@ -172,12 +166,12 @@ MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& moti
         const TargetGroup group = group_of_targets(*campaign.sensor, sensor_unknowns);
         const Vector3d p = motion.world_from_flange * group.middle;
         const Vector3d p_rate =
-            shares_of(campaign, group).turn * (direction.tail<3>() + direction.head<3>().cross(p));
+            shares_of(group).turn * (direction.tail<3>() + direction.head<3>().cross(p));
         TwistMatrix rates = TwistMatrix::Zero(6, 6);
         for (Index k = 0; k < 3; ++k) {
             rates.block<3, 1>(3, 3 + k) = p_rate.cross(Vector3d::Unit(k));
         }
-        add(model_error_twists(campaign, motion.world_from_flange, sensor_unknowns), rates,
+        add(model_error_twists(*campaign.sensor, motion.world_from_flange, sensor_unknowns), rates,
             VectorXd::Constant(6, common));
     }
     return covariance_rate;
@@ -246,7 +240,7 @@ void PoseNoise::add_effects(const FlangeMotion& motion, const VectorXd& sensor_u
         effect_.leftCols(joints) *= campaign_.joint_repeatability.asDiagonal();
     }
     if (common_ > 0) {
-        fill(model_error_twists(campaign_, motion.world_from_flange, sensor_unknowns),
+        fill(model_error_twists(*campaign_.sensor, motion.world_from_flange, sensor_unknowns),
              effect_.rightCols<6>());
         effect_.rightCols<6>() *= common_;
     }

@@ -169,7 +169,7 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
         detail::fill_normals(stream, drawn);
         drawn.array() *= own_errors.array();
         if (common > 0) {
-            sensor.differentiate(flange, detail::model_error_twists(campaign, flange, truth.sensor),
+            sensor.differentiate(flange, detail::model_error_twists(sensor, flange, truth.sensor),
                                  truth.sensor, effect);
             drawn += common * effect * stream.normals(6);
         }

@@ -166,11 +166,9 @@ Json read_document(const std::string& path, const std::string& kind) {
     return document;
 }
 
-std::string si_suffix(const AmountUnits& units) {
-    return units.si.empty() ? "" : '_' + std::string(units.si);
-}
+std::string si_suffix(bool is_angle) { return '_' + std::string(units_of(is_angle).si); }
 
-std::string error_suffix(const AmountUnits& units) { return '_' + std::string(units.error); }
+std::string error_suffix(bool is_angle) { return '_' + std::string(units_of(is_angle).error); }
 
 const char* load_key(bool turns) { return turns ? "at_Nm" : "at_N"; }
 
