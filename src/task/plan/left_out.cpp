@@ -20,25 +20,17 @@ Campaign weighed_as(const Campaign& poorer, Campaign richer) {
     return richer;
 }
 
-/// What a plan's poses and those measured already show of a campaign's parameters, rows over their
-/// noise, and what these do to positions over the workspace, m. Columns are scaled.
-struct Columns {
-    MatrixXd shown;
-    MatrixXd moved;
-};
-
-Columns columns_of(const Campaign& campaign, const Plan& plan, const PlanningOptions& made) {
-    PlanningProblem problem = state_planning(campaign, made);
-    draw_workspace(problem, made);
+/// What a plan's poses and those measured already show of a campaign's parameters: rows over their
+/// noise, columns scaled.
+MatrixXd shown_rows(const PlanningProblem& problem, const Plan& plan, const PlanningOptions& made) {
     const MatrixXd poses = blocks_of(problem, plan.poses).matrix;
-    Columns columns{poses, problem.errors.by_parameters.matrix};
-    if (!made.held) return columns;
+    if (!made.held) return poses;
     const MatrixXd held = make_blocks(problem.campaign, problem.campaign.nominal,
                                       made.held->configurations, times_seen(*made.held))
                               .matrix;
-    columns.shown.resize(poses.rows() + held.rows(), poses.cols());
-    columns.shown << poses, held;
-    return columns;
+    MatrixXd rows(poses.rows() + held.rows(), poses.cols());
+    rows << poses, held;
+    return rows;
 }
 
 }  // namespace
@@ -50,9 +42,15 @@ void judge_left_out(Planning& planning, const PlanningOptions& options) {
     if (campaigns.empty()) return;
     const auto& [key, richest] = campaigns.back();
     const Campaign& poorer = planning.campaign;
-    const PlanningOptions made = options_of(plan, options);
-    const auto [B0, C0] = columns_of(poorer, plan, made);
-    const auto [B, C] = columns_of(weighed_as(poorer, richest), plan, made);
+    PlanningOptions made = options_of(plan, options);
+    const PlanningProblem problem = state_planning(poorer, made);
+    made.workspace = workspace_of(problem, made);  // drawn once for all three
+    PlanningProblem weighed = state_planning(weighed_as(poorer, richest), made);
+    draw_workspace(weighed, made);
+    const MatrixXd B0 = shown_rows(problem, plan, made);
+    const MatrixXd B = shown_rows(weighed, plan, made);
+    const MatrixXd& C0 = planning.errors.by_parameters.matrix;
+    const MatrixXd& C = weighed.errors.by_parameters.matrix;
     const Index begin = base_parameter_count(richest);
     const Index count = richest.robot.parameter_count();
 
@@ -75,7 +73,7 @@ void judge_left_out(Planning& planning, const PlanningOptions& options) {
     left_out.expected = with_sizes(1);
     left_out.lower = with_sizes(1 / most);
     left_out.upper = with_sizes(most);
-    left_out.with_them = predict_total(*judge_again(plan, richest, options).plan.predicted).rms;
+    left_out.with_them = predict_total(*judge_again(plan, richest, made).plan.predicted).rms;
     if (left_out.expected > 1.1 * left_out.promised) planning.left_out = left_out;
 }
 
