@@ -84,7 +84,7 @@ class Choice(Result):
         """
         with Files() as files:
             stated = with_sources(self.document, files.open(self._inputs))
-            plan = files.text("plan", json.dumps(stated))
+            plan = json.dumps(stated)
             if isinstance(self._source, Blocks):
                 result = _posewise.verify_plain(plan, self._source.core(), self._groups)
             else:
@@ -112,8 +112,8 @@ class Choice(Result):
         if self._groups:
             inputs["groups"] = self._groups_file()
         paths.update({name: one.beside(target, name) for name, one in inputs.items()})
-        with Files() as files:
-            document = files.text("plan", json.dumps(with_sources(self.document, paths)))
+        document = json.dumps(with_sources(self.document, paths))
+        with Files():
             _posewise.write_plan(document, str(target), None, "", "", self.warnings)
 
     def _groups_file(self) -> Content:

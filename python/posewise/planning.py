@@ -67,7 +67,7 @@ class Plan(Result):
     def _table(self, kind: str) -> pd.DataFrame:
         with Files() as files:
             path = files.path(kind, ".csv")
-            self._write(files, files.path("out", ".json"), {}, **{kind: path})
+            self._write(files.path("out", ".json"), {}, **{kind: path})
             return read_table(path)
 
     @property
@@ -99,7 +99,7 @@ class Plan(Result):
         """Checks every pose, the value and the predictions again; one row for each finding."""
         with Files() as files:
             stated = with_sources(self.document, files.open(self._inputs))
-            plan = files.text("plan", json.dumps(stated))
+            plan = json.dumps(stated)
             result = _posewise.verify(plan, self.campaign._core, [])
         return findings(result[0])
 
@@ -119,13 +119,13 @@ class Plan(Result):
             for name, one in (("csv", csv), ("targets", targets))
             if one is not None
         }
-        with Files() as files:
-            self._write(files, str(target), paths, **tables)
+        with Files():
+            self._write(str(target), paths, **tables)
 
     def _write(
-        self, files: Files, path: str, paths: dict[str, str], csv: str = "", targets: str = ""
+        self, path: str, paths: dict[str, str], csv: str = "", targets: str = ""
     ) -> None:
-        plan = files.text("plan", json.dumps(with_sources(self.document, paths)))
+        plan = json.dumps(with_sources(self.document, paths))
         _posewise.write_plan(plan, path, self.campaign._core, csv, targets, self.warnings)
 
     def __len__(self) -> int:

@@ -153,9 +153,9 @@ PlanCall asked_again(const Plan& plan, std::vector<Index> groups) {
             plan.kind,    plan.candidate_count,   std::move(groups)};
 }
 
-Result verify_plain(const std::string& plan_path, const PlainBlocks& blocks,
+Result verify_plain(const std::string& document, const PlainBlocks& blocks,
                     std::vector<Index> groups) {
-    const Plan plan = io::read_plan(plan_path);
+    const Plan plan = io::parse_plan(document, "plan");
     return call([&](const CallControl& control) {
         ChoiceOptions options = read_plain(blocks, plan.request, groups);
         options.stop = control.stop;
@@ -164,9 +164,9 @@ Result verify_plain(const std::string& plan_path, const PlainBlocks& blocks,
     });
 }
 
-Result verify_of_campaign(const std::string& plan_path, const io::CampaignFile& campaign,
+Result verify_of_campaign(const std::string& document, const io::CampaignFile& campaign,
                           std::vector<Index> groups) {
-    const Plan plan = io::read_plan(plan_path);
+    const Plan plan = io::parse_plan(document, "plan");
     return call([&](const CallControl& control) {
         Sentences warnings;
         const PlanCall asked = asked_again(plan, groups);
@@ -242,10 +242,10 @@ void check_plan(const std::string& path, const io::CampaignFile& campaign) {
 }
 
 /// A document of a plan as a plan file, and what goes with it.
-void write_plan(const std::string& document_path, const std::string& path,
+void write_plan(const std::string& document, const std::string& path,
                 const io::CampaignFile* campaign, const io::PlanTables& tables,
                 const Sentences& warnings) {
-    const Plan plan = io::read_plan(document_path);
+    const Plan plan = io::parse_plan(document, "plan");
     if (campaign == nullptr) return io::write_plan(path, plan, warnings);
     io::write_plan(path, plan, tables, *campaign, warnings);
 }
@@ -426,12 +426,11 @@ PYBIND11_MODULE(_posewise, module) {
     module.def("rate_blocks", &rate_blocks);
     module.def("plan", &plan_campaign);
     module.def("check_plan", &check_plan);
-    module.def("write_plan", [](const std::string& document_path, const std::string& path,
+    module.def("write_plan", [](const std::string& document, const std::string& path,
                                 const posewise::io::CampaignFile* campaign, std::string csv,
                                 std::string targets, const Sentences& warnings) {
         call_here([&] {
-            write_plan(document_path, path, campaign, {std::move(csv), std::move(targets)},
-                       warnings);
+            write_plan(document, path, campaign, {std::move(csv), std::move(targets)}, warnings);
         });
     });
     module.def("calibrate", &calibrate_campaign);

@@ -44,6 +44,12 @@ def assert_all_there(path):
         assert (path.parent / name).exists(), name
 
 
+@pytest.fixture(autouse=True)
+def far_folder(monkeypatch):
+    """Neither above nor beside what tests write: no path leads there by luck."""
+    monkeypatch.chdir("/usr/lib")
+
+
 def some_poses(campaign, count, seed=1):
     """Configurations near the middle of the limits."""
     q = np.random.default_rng(seed).uniform(-0.3, 0.3, (count, len(campaign.joints)))

@@ -35,6 +35,8 @@ void write_plan(const std::string& path, const Plan& plan, const PlanTables& tab
 /// reading the file once. Relative paths lead from the plan's folder or else from the current one.
 /// Throws InputError with the place for whatever is missing, of another type or out of range.
 Plan read_plan(const std::string& path);
+/// The same of what the file at that path would hold.
+Plan parse_plan(const std::string& content, const std::string& path);
 /// As above; or, of a file that ends in .csv, its configurations as the poses of a plan: those with
 /// the purpose verify to verify, via points left out.
 Plan read_plan(const std::string& path, const Campaign& campaign);

@@ -113,8 +113,9 @@ void write_json(const std::string& path, const Json& document) {
     write_file(path, json_text(document, path));
 }
 
-Json read_json(const std::string& path, const std::string& what) {
-    const std::string content = read_file(path);
+namespace {
+
+Json parse_json(const std::string& content, const std::string& path, const std::string& what) {
     check_file_kind(content, path, FileKind::Document,
                     with_article(what) + " as posewise writes it");
     Json document;
@@ -144,9 +145,19 @@ Json read_json(const std::string& path, const std::string& what) {
     return document;
 }
 
+}  // namespace
+
+Json read_json(const std::string& path, const std::string& what) {
+    return parse_json(read_file(path), path, what);
+}
+
 Json read_document(const std::string& path, const std::string& kind) {
+    return parse_document(read_file(path), path, kind);
+}
+
+Json parse_document(const std::string& content, const std::string& path, const std::string& kind) {
     const int format = format_of(kind);
-    Json document = read_json(path, kind);
+    Json document = parse_json(content, path, kind);
     const auto found = document.is_object() ? document.find("kind") : document.end();
     if (found == document.end() || *found != "posewise " + kind) {
         throw input_error_at({path}, "kind: must be \"posewise " + kind + "\", as in " +

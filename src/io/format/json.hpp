@@ -32,6 +32,8 @@ Json read_json(const std::string& path, const std::string& what);
 /// Reads a document of that kind. Throws InputError for anything else, for another format than
 /// make_document() writes, and for a key that stands twice.
 Json read_document(const std::string& path, const std::string& kind);
+/// The same of what the file at that path would hold.
+Json parse_document(const std::string& content, const std::string& path, const std::string& kind);
 
 /// `_rad` or `_m`.
 std::string si_suffix(bool is_angle);

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/ending_names.hpp"
+#include "io/format/atomic_file.hpp"
 #include "io/format/fields.hpp"
 #include "io/format/units.hpp"
 #include "posewise/io/result_files.hpp"
@@ -403,8 +404,10 @@ Json plan_to_json(const Plan& plan, const std::string& path) {
 
 namespace posewise::io {
 
-Plan read_plan(const std::string& path) {
-    const detail::Json json = detail::read_document(path, "plan");
+Plan read_plan(const std::string& path) { return parse_plan(detail::read_file(path), path); }
+
+Plan parse_plan(const std::string& content, const std::string& path) {
+    const detail::Json json = detail::parse_document(content, path, "plan");
     const detail::JsonValue document(json, path);
     Plan plan;
     plan.columns = detail::columns_of(document["poses"]);
