@@ -26,7 +26,7 @@ configure_package_config_file(cmake/posewiseConfig.cmake.in posewiseConfig.cmake
   INSTALL_DESTINATION "${package_directory}")
 write_basic_package_version_file(posewiseConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/posewiseConfig.cmake"
-  "${PROJECT_BINARY_DIR}/posewiseConfigVersion.cmake" cmake/FindMatIO.cmake cmake/FindMinizip.cmake
+  "${PROJECT_BINARY_DIR}/posewiseConfigVersion.cmake" cmake/FindMinizip.cmake
   DESTINATION "${package_directory}")
 
 # cpack -G DEB makes a package for Debian and Ubuntu of what is built.
@@ -36,5 +36,8 @@ if(PROJECT_IS_TOP_LEVEL)
   set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
   set(CPACK_DEBIAN_PACKAGE_SECTION science)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+  if(MatIO_FILE MATCHES "libmatio\\.so\\.([0-9]+)")  # loaded when it is needed: not seen as linked
+    set(CPACK_DEBIAN_PACKAGE_DEPENDS "libmatio${CMAKE_MATCH_1}")
+  endif()
   include(CPack)
 endif()

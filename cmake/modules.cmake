@@ -66,8 +66,8 @@ function(posewise_library)
     "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
   target_link_libraries(posewise
     PUBLIC Eigen3::Eigen
-    PRIVATE OpenMP::OpenMP_CXX yaml-cpp fmt::fmt MatIO::MatIO NLopt::nlopt pugixml::pugixml
-      SQLite::SQLite3 Minizip::Minizip)
+    PRIVATE OpenMP::OpenMP_CXX yaml-cpp fmt::fmt NLopt::nlopt pugixml::pugixml
+      SQLite::SQLite3 Minizip::Minizip ${CMAKE_DL_LIBS})
   target_compile_features(posewise PUBLIC cxx_std_20)
   set_target_properties(posewise PROPERTIES LINKER_LANGUAGE CXX
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})

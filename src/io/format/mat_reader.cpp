@@ -1,5 +1,6 @@
 #include "mat_reader.hpp"
 
+#include <dlfcn.h>
 #include <matio.h>
 
 #include <algorithm>
@@ -12,6 +13,49 @@
 
 namespace posewise::detail {
 namespace {
+
+/// What is used of libmatio. It is loaded with the first MATLAB file: HDF5, curl and whatever else
+/// comes along take longer to load than most commands take.
+class Library {
+  public:
+    static const Library& loaded() {
+        static const Library library;
+        return library;
+    }
+
+    decltype(&Mat_LogInitFunc) set_log;
+    decltype(&Mat_Open) open;
+    decltype(&Mat_Close) close;
+    decltype(&Mat_GetDir) names;
+    decltype(&Mat_VarReadInfo) read_info;
+    decltype(&Mat_VarReadData) read_data;
+    decltype(&Mat_VarFree) free_variable;
+
+  private:
+    Library() : handle_(dlopen(POSEWISE_MATIO, RTLD_LAZY | RTLD_LOCAL)) {
+        if (handle_ == nullptr) fail();
+        find("Mat_LogInitFunc", set_log);
+        find("Mat_Open", open);
+        find("Mat_Close", close);
+        find("Mat_GetDir", names);
+        find("Mat_VarReadInfo", read_info);
+        find("Mat_VarReadData", read_data);
+        find("Mat_VarFree", free_variable);
+    }
+
+    template <typename Function>
+    void find(const char* name, Function& function) {
+        function = reinterpret_cast<Function>(dlsym(handle_, name));
+        if (function == nullptr) fail();
+    }
+
+    [[noreturn]] static void fail() {
+        throw InputError(std::string("MATLAB files cannot be read: ") + dlerror() +
+                         "; libmatio must be installed, or the data be stated as CSV");
+    }
+
+    void* handle_;
+};
 
 /// libmatio reports damage only through its log: as a line of text, and as a return value for part
 /// of it. Here the lines are counted, and nothing is printed.
@@ -29,7 +73,7 @@ InputError variable_error(const std::string& path, const std::string& name,
 
 std::vector<std::string> variable_names(mat_t* file) {
     std::size_t count = 0;
-    char** const names = Mat_GetDir(file, &count);
+    char** const names = Library::loaded().names(file, &count);
     std::vector<std::string> list;
     for (std::size_t i = 0; names != nullptr && i < count; ++i) {
         if (names[i] != nullptr) list.emplace_back(names[i]);
@@ -85,7 +129,7 @@ bool is_whole(const std::string& content) {
 
 }  // namespace
 
-MatReader::MatReader(const std::string& path) : path_(path), file_(nullptr, Mat_Close) {
+MatReader::MatReader(const std::string& path) : path_(path), file_(nullptr, nullptr) {
     const std::string content = read_file(path);
     if (content.empty()) throw input_error_at({path}, "is empty; must be a MATLAB file");
     byte_count_ = content.size();
@@ -94,8 +138,9 @@ MatReader::MatReader(const std::string& path) : path_(path), file_(nullptr, Mat_
         throw input_error_at({path}, "is cut short or damaged; must be a whole MATLAB file");
     }
     if (is_version_5 || has_header(content, 2)) {
-        Mat_LogInitFunc("posewise", count_damage);
-        file_.reset(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+        const Library& matio = Library::loaded();
+        matio.set_log("posewise", count_damage);
+        file_ = {matio.open(path.c_str(), MAT_ACC_RDONLY), matio.close};
     }
     if (file_ == nullptr) {
         throw input_error_at({path},
@@ -135,7 +180,8 @@ MatrixXd MatReader::read_with_gaps(const std::string& name, Index columns) const
 
 MatrixXd MatReader::read_unchecked(const std::string& name, std::optional<Index> columns) const {
     damage_count = 0;
-    const Variable variable(Mat_VarReadInfo(file_.get(), name.c_str()), Mat_VarFree);
+    const Library& matio = Library::loaded();
+    const Variable variable(matio.read_info(file_.get(), name.c_str()), matio.free_variable);
     if (variable == nullptr) {
         const bool is_damaged = damage_count > 0;
         throw variable_error(
@@ -170,7 +216,7 @@ MatrixXd MatReader::read_unchecked(const std::string& name, std::optional<Index>
     int start[2] = {0, 0};
     int stride[2] = {1, 1};
     int count[2] = {static_cast<int>(rows), static_cast<int>(width)};
-    if (Mat_VarReadData(file_.get(), variable.get(), values.data(), start, stride, count) != 0 ||
+    if (matio.read_data(file_.get(), variable.get(), values.data(), start, stride, count) != 0 ||
         damage_count > 0) {
         throw variable_error(path_, name, damaged);
     }
