@@ -81,6 +81,9 @@ void add_observation_changes(const Sensor& sensor, OrientationNotation notation,
             all.push_back({{.kind = Kind::LengthFactor, .joint = target, .factor = factor}});
         }
     }
+    for (Index image = 1; sensor.has_pixels() && image < 8; ++image) {
+        all.push_back({{.kind = Kind::Image, .other = image}});
+    }
     if (!sensor.has_orientation()) return;
     all.push_back({{.kind = Kind::Inverted}});
     constexpr Index orders = 6;

@@ -217,7 +217,7 @@ CrossValidation cross_validate(const Campaign& campaign, const Measurements& mea
             all.conservativeResize(all.rows() + part.rows(), all.cols());
             all.bottomRows(part.rows()) = part;
         }
-        return make_metrics(all, campaign.sensor->lengths_per_target());
+        return make_metrics(all, *campaign.sensor);
     };
     CrossValidation result{
         std::ssize(members), join(samples), join(means), distances, angles, {}, {}};

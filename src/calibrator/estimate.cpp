@@ -126,10 +126,15 @@ Metrics make_metrics(const RowMatrixXd& residuals, Index length_count) {
     return metrics;
 }
 
+Metrics make_metrics(const RowMatrixXd& residuals, const Sensor& sensor) {
+    Metrics metrics = make_metrics(residuals, sensor.lengths_per_target());
+    metrics.orientation_units = &sensor.units(true);
+    return metrics;
+}
+
 Metrics make_metrics(const Campaign& campaign, const Parameters& parameters,
                      const Measurements& measurements) {
-    return make_metrics(residuals(campaign, parameters, measurements),
-                        campaign.sensor->lengths_per_target());
+    return make_metrics(residuals(campaign, parameters, measurements), *campaign.sensor);
 }
 
 }  // namespace posewise

@@ -143,6 +143,7 @@ std::vector<ErrorPrediction> predict_errors(const Campaign& campaign, const Esti
             campaign.spread.is_prior ? 0 : estimate.variance_of(is_angle).degrees_of_freedom;
         ErrorPrediction& prediction = predictions.emplace_back();
         prediction.is_angle = is_angle;
+        prediction.units = &sensor.units(is_angle);
         prediction.each.resize(static_cast<std::size_t>(configurations.rows()));
         const auto width = static_cast<std::size_t>(sensor.target_count());
         detail::for_each_range(configurations.rows(), at_once, [&](Index first, Index last) {

@@ -83,10 +83,10 @@ class PredictiveScore {
             all.col(size_) = deviation;
             if ((repeats.array() == 0).all()) continue;
             if (common_ > 0) {
-                sensor.differentiate(
-                    motion.world_from_flange,
-                    model_error_twists(sensor, motion.world_from_flange, parameters.sensor),
-                    parameters.sensor, effect);
+                sensor.differentiate(motion.world_from_flange,
+                                     model_error_twists(problem.campaign, motion.world_from_flange,
+                                                        parameters.sensor),
+                                     parameters.sensor, effect);
             }
             const MatrixXd& covariance = noise.covariance(motion, parameters.sensor, repeats);
             const Index count = covariance.rows();
@@ -98,8 +98,10 @@ class PredictiveScore {
             }
             first_row_.push_back(row);
         }
-        has_ = {sensor.has_lengths() && std::isfinite(expected_[0]),
-                sensor.has_angles() && std::isfinite(expected_[1])};
+        // Of pixels both move the flange together: one number is found.
+        const bool has_pixels = sensor.has_pixels();
+        has_ = {(sensor.has_lengths() || has_pixels) && std::isfinite(expected_[0]),
+                sensor.has_angles() && !has_pixels && std::isfinite(expected_[1])};
         stated_.conservativeResize(row, Eigen::NoChange);
         problem.units.scale_columns(stated_.leftCols(size_));
         whitened_.resize(row, size_ + 1);
@@ -124,10 +126,11 @@ class PredictiveScore {
             covariance_ = covariances_.block(first, 0, count, count);
             if (common_ > 0) {
                 const auto moved = effects_.middleRows(first, count);
+                detail::raise_to_rounding(covariance_, common_ * squares[0] * moved.squaredNorm());
                 covariance_.noalias() += common_ * squares[0] * moved * moved.transpose();
             }
             for (Index k = 0; k < count; ++k) {
-                const bool turns = is_angle_[static_cast<std::size_t>(first + k)];
+                const bool turns = has_[1] && is_angle_[static_cast<std::size_t>(first + k)];
                 covariance_(k, k) += turns ? squares[1] : (1 - common_) * squares[0];
             }
             if (common_ == 0) {
@@ -372,6 +375,10 @@ Campaign find_model_error(const IdentificationProblem& problem, const Parameters
     found.model_error = within_reach(std::exp(averages[0]), expected.model_error);
     found.model_error_orientation =
         within_reach(std::exp(averages[1]), expected.model_error_orientation);
+    if (expected.sensor->has_pixels() && expected.model_error > 0) {
+        found.model_error_orientation =
+            expected.model_error_orientation * found.model_error / expected.model_error;
+    }
     return found;
 }
 

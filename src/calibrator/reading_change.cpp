@@ -11,6 +11,7 @@
 #include "core/format.hpp"
 #include "length_units.hpp"
 #include "posewise/core/types.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/model/chain.hpp"
 
@@ -89,6 +90,27 @@ void change_axes(const ReadingChange& change, RowMatrixXd& observations) {
     }
 }
 
+bool are_exchanged(const ReadingChange& change) { return (change.other & 1) != 0; }
+bool is_reversed(const ReadingChange& change, Index axis) {
+    return (change.other & (axis == 0 ? 2 : 4)) != 0;
+}
+
+/// In an image of the size that the campaign states, else of twice the principal point.
+void change_image(const ReadingChange& change, const Sensor& sensor, RowMatrixXd& observations) {
+    const auto* const camera = dynamic_cast<const CameraSensor*>(&sensor);
+    if (camera == nullptr) return;
+    const Intrinsics& stated = camera->setup().intrinsics;
+    const Vector2d size =
+        1e-3 * camera->setup().view.image.value_or(2 * Vector2d(stated.cx, stated.cy));
+    for (Index u = 0; u < observations.cols(); u += 2) {
+        if (are_exchanged(change)) observations.col(u).swap(observations.col(u + 1));
+        for (Index axis = 0; axis < 2; ++axis) {
+            if (!is_reversed(change, axis)) continue;
+            observations.col(u + axis) = size[axis] - observations.col(u + axis).array();
+        }
+    }
+}
+
 void change_orientations(const OrientationSense& sense, Measurements& measurements) {
     const bool has_rpy = measurements.roll_pitch_yaw.rows() > 0;
     for (Index k = 0; k < measurements.observations.rows(); ++k) {
@@ -108,6 +130,20 @@ std::string axes(const ReadingChange& change) {
         text +=
             fmt::format("{}{}{}", axis == 0 ? "" : ", ", is_axis_reversed(change, axis) ? "-" : "",
                         "xyz"[column_of_axis(change, axis)]);
+    }
+    return text;
+}
+
+/// "v, width - u": what is meant by u, v.
+std::string image_axes(const ReadingChange& change) {
+    std::string text;
+    for (Index axis = 0; axis < 2; ++axis) {
+        const Index column = are_exchanged(change) ? 1 - axis : axis;
+        text += fmt::format("{}{}{}", axis == 0 ? "" : ", ",
+                            !is_reversed(change, axis) ? ""
+                            : axis == 0                ? "width - "
+                                                       : "height - ",
+                            "uv"[column]);
     }
     return text;
 }
@@ -173,6 +209,8 @@ std::string describe_one(const ReadingChange& change, const Campaign& campaign,
             return "each pose inverted";
         case Kind::Axes:
             return axes(change) + " in place of x, y, z";
+        case Kind::Image:
+            return image_axes(change) + " in place of u, v";
         case Kind::Orientation:
             return fmt::format("{} {}", orientation_columns(notation), change.sense->words);
     }
@@ -213,6 +251,11 @@ std::string cure_one(const ReadingChange& change, const Campaign& campaign) {
                    "or camera_in_board), or invert each pose";
         case Kind::Axes:
             return fmt::format("write {} into the columns x, y, z", axes(change));
+        case Kind::Image:
+            return fmt::format(
+                "write {} into the columns u, v: the image was mirrored or turned after the "
+                "camera was calibrated, or these columns exchanged",
+                image_axes(change));
         case Kind::Orientation:
             return change.sense->cure;
     }
@@ -230,6 +273,7 @@ Measurements read_with(const ReadingChanges& changes, const Campaign& campaign,
         change_joints(change, campaign, measurements.configurations);
         if (change.kind == Kind::LengthFactor)
             change_lengths(change, *campaign.sensor, observations);
+        if (change.kind == Kind::Image) change_image(change, *campaign.sensor, observations);
         if (change.kind == Kind::Axes) change_axes(change, observations);
         if (change.kind == Kind::LeftHanded) mirror(*campaign.sensor, observations);
         if (change.kind == Kind::Orientation) change_orientations(*change.sense, measurements);

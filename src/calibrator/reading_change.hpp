@@ -22,6 +22,7 @@ struct ReadingChange {
         Orientation,   ///< the orientations in another sense
         Inverted,      ///< each pose: the instrument's frame in the body's was measured
         Axes,          ///< x, y, z of a pose along other axes than its orientation's
+        Image,         ///< u and v exchanged, then reversed: 1, 2 and 4 of `other`
     } kind = Kind::Reversed;
     Index joint = -1;  ///< or target, or the order of axes
     Index other = -1;  ///< or which axes are reversed, a bit each

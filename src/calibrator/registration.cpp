@@ -33,11 +33,16 @@ Measurements as_points(const Measurements& means, const ObservedPoints& observed
     const Index count = observed.points.count();
     points.observations.resize(means.observations.rows(), 3 * count);
     points.is_seen.resize(means.is_seen.rows(), count);
+    const Index targets = means.is_seen.cols();
+    const bool are_of_targets = count % targets == 0;
     for (Index i = 0; i < points.observations.rows(); ++i) {
-        points.observations.row(i) =
-            observed.positions(means.observations.row(i).transpose()).transpose();
-        for (Index k = 0; k < count; ++k) {
-            points.is_seen(i, k) = means.is_seen(i, k * means.is_seen.cols() / count);
+        const VectorXd positions =
+            observed.positions(means.observations.row(i).transpose(), means.is_seen.row(i));
+        points.is_seen.row(i).setConstant(positions.size() > 0);
+        if (positions.size() == 0) continue;
+        points.observations.row(i) = positions.transpose();
+        for (Index k = 0; k < count && are_of_targets; ++k) {
+            points.is_seen(i, k) = means.is_seen(i, k * targets / count);
         }
     }
     return points;
@@ -125,8 +130,11 @@ Registration find_start(const Campaign& campaign, const Measurements& measuremen
     const Sensor& sensor = *campaign.sensor;
     std::string unseen = detail::describe_unseen_target(campaign, measurements);
     if (!unseen.empty()) return {campaign.nominal, std::move(unseen)};
-    if (const auto observed = registered_points(campaign)) {
-        return solve_linear(campaign, *observed, mean_measurements(sensor, measurements));
+    if (base_parameter_count(campaign) == 6) {
+        const Measurements means = mean_measurements(sensor, measurements);
+        if (const auto observed = sensor.observed_points(means)) {
+            return solve_linear(campaign, *observed, means);
+        }
     }
     const bool is_found_anyway = base_parameter_count(campaign) == 0 && !sensor.needs_first_guess();
     if (!is_found_anyway && (!campaign.has_nominal_base || !campaign.has_nominal_targets)) {

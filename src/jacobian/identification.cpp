@@ -93,7 +93,7 @@ Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
 
 Blocks make_position_blocks(const Campaign& campaign, const Parameters& parameters,
                             const RowMatrixXd& configurations) {
-    const Index rows = 3 * campaign.sensor->target_count();
+    const Index rows = 3 * campaign.sensor->position_count();
     Blocks blocks;
     for (Index i = 0; i < configurations.rows(); ++i) {
         campaign.robot.check_configuration(configurations.row(i).transpose());

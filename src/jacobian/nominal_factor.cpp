@@ -21,6 +21,9 @@ Parameters nominal_of(const Campaign& campaign) {
 
 ShownPoses poses_to_judge(const Campaign& campaign, Index count) {
     const Parameters nominal = nominal_of(campaign);
+    if (campaign.sensor->has_view()) {
+        return viewed_poses(campaign, nominal, count, configuration_seed);
+    }
     auto touching = touching_poses(campaign, nominal, count, configuration_seed);
     return touching ? std::move(*touching)
                     : random_poses(campaign, nominal, count, configuration_seed);

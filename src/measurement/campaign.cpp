@@ -63,6 +63,14 @@ std::vector<bool> parameter_is_angle(const Campaign& campaign) {
     return is_angle;
 }
 
+std::vector<const AmountUnits*> parameter_units(const Campaign& campaign) {
+    std::vector<const AmountUnits*> units;
+    for (const bool is_angle : parameter_is_angle(campaign)) units.push_back(&units_of(is_angle));
+    const auto of_sensor = campaign.sensor->unknown_units();
+    std::ranges::copy(of_sensor, units.end() - std::ssize(of_sensor));
+    return units;
+}
+
 double& size_of(ParameterSpread& spread, const Chain& robot, Index parameter) {
     const Element& element = robot.parameter_element(parameter);
     const bool turns = element.motion == Motion::Rotation;

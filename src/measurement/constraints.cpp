@@ -89,7 +89,8 @@ const char* constraint_name(Constraint constraint) {
         "tracker.elevation",
         "reflectors.acceptance_half_angle",
         "tracker.line_of_sight",
-        "reflectors.at_least_visible"};
+        "reflectors.at_least_visible",
+        "sensor.view"};
     return names[static_cast<std::size_t>(constraint)];
 }
 
@@ -101,6 +102,8 @@ Constraints::Constraints(const Campaign& campaign, Cell cell, bool needs_contact
     : cell_(std::move(cell)),
       contact_(needs_contact && campaign.sensor->has_contacts() ? std::optional(campaign)
                                                                 : std::nullopt),
+      view_(needs_contact && campaign.sensor->has_view() ? campaign.sensor : nullptr),
+      view_unknowns_(campaign.nominal.sensor),
       robot_(without_parameters(detail::with_margin(campaign.robot, cell_.limit_margin))),
       target_count_(campaign.sensor->target_count()),
       tracker_from_base_(campaign.nominal.world_from_base),
@@ -109,6 +112,12 @@ Constraints::Constraints(const Campaign& campaign, Cell cell, bool needs_contact
       pairs_(detail::colliding_pairs(cell_.links, bodies_, robot_.joint_count())),
       clearance_rates_(detail::clearance_rates(robot_, bodies_)) {
     detail::check_cell(cell_, robot_, targets_);
+    if (view_ && !(campaign.has_nominal_base && campaign.has_nominal_targets)) {
+        throw InputError(
+            fmt::format("what a camera sees depends on where it is; the campaign must state base "
+                        "and {}, if only roughly",
+                        view_->words().key));
+    }
     const Vector3d tracker = tracker_from_base_.inverse().translation();
     for (std::size_t i = 0; i < cell_.keep_outs.size(); ++i) {
         if (!contains(cell_.keep_outs[i].solid, tracker)) screens_.push_back(i);
@@ -117,8 +126,8 @@ Constraints::Constraints(const Campaign& campaign, Cell cell, bool needs_contact
 
 bool Constraints::restricts_places() const {
     const bool has_obstacles = !bodies_.empty() && !cell_.keep_outs.empty();
-    return contact_ || cell_.sight || !cell_.joint_sums.empty() || !cell_.target_boxes.empty() ||
-           has_obstacles || !pairs_.empty();
+    return contact_ || view_ || cell_.sight || !cell_.joint_sums.empty() ||
+           !cell_.target_boxes.empty() || has_obstacles || !pairs_.empty();
 }
 
 Constraints::Posture Constraints::pose_bodies(const VectorXd& q) const {
@@ -231,7 +240,7 @@ void Constraints::check_sight(const Posture& posture, ConstraintReport& report) 
         tracker_from_base_.linear() * posture.base_from_flange.linear();
     // Clearances of each target: range, azimuth, elevation, incidence, line, and the least of them.
     constexpr std::size_t first = static_cast<std::size_t>(Constraint::Range);
-    constexpr std::size_t kinds = constraint_count - first;
+    constexpr std::size_t kinds = static_cast<std::size_t>(Constraint::VisibleTargets) + 1 - first;
     std::array<std::vector<double>, kinds> clearances;
     for (std::size_t j = 0; j < count; ++j) {
         const Vector3d point = tracker_from_base_ * posture.targets[j];
@@ -261,6 +270,16 @@ void Constraints::check_sight(const Posture& posture, ConstraintReport& report) 
     }
 }
 
+void Constraints::check_view(const Posture& posture, ConstraintReport& report) const {
+    VectorXd clearances =
+        view_->view_clearances(tracker_from_base_ * posture.base_from_flange, view_unknowns_);
+    report.is_seen = report.is_seen && clearances.transpose().array() >= -pose_rounding;
+    const Index needed = std::min(view_->least_in_view(), clearances.size());
+    const auto nth = clearances.begin() + needed - 1;
+    std::nth_element(clearances.begin(), nth, clearances.end(), std::greater<>());
+    report.clearance[static_cast<std::size_t>(Constraint::View)] = *nth;
+}
+
 ConstraintReport Constraints::check(const VectorXd& q) const {
     robot_.check_configuration(q);
     const Posture posture = pose_bodies(q);
@@ -278,11 +297,13 @@ ConstraintReport Constraints::check(const VectorXd& q) const {
     set(Constraint::SelfCollision, nearest_of_robot(posture).distance - cell_.safety_distance);
     if (cell_.sight) check_sight(posture, report);
     if (contact_) check_contact(q, report);
+    if (view_) check_view(posture, report);
     return report;
 }
 
 SeenTargets Constraints::seen(const VectorXd& q) const {
-    return cell_.sight || contact_ ? check(q).is_seen : SeenTargets::Constant(target_count_, true);
+    return cell_.sight || contact_ || view_ ? check(q).is_seen
+                                            : SeenTargets::Constant(target_count_, true);
 }
 
 double Constraints::collision_clearance(const VectorXd& q) const {

@@ -4,7 +4,10 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "model/sampling.hpp"
 #include "posewise/core/errors.hpp"
@@ -127,6 +130,27 @@ ShownPoses draw_poses(const Campaign& campaign, const Parameters& parameters, In
         "reach as stated, keys sensor.sockets and {}",
         unreached.empty() ? "a socket" : fmt::format("{}", fmt::join(unreached, ", ")),
         campaign.sensor->words().key));
+}
+
+ShownPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, Index count,
+                        std::uint64_t seed) {
+    constexpr Index drawn_for_each = 64;
+    const RowMatrixXd drawn = random_configurations(campaign.robot, drawn_for_each * count, seed);
+    const Sensor& sensor = *campaign.sensor;
+    std::vector<std::pair<double, Index>> hidden;  // by how much, 0: it is in view
+    for (Index i = 0; i < drawn.rows(); ++i) {
+        const Isometry3d flange = world_from_flange(campaign, parameters, drawn.row(i).transpose());
+        VectorXd clearances = sensor.view_clearances(flange, parameters.sensor);
+        const auto least = clearances.begin() + sensor.least_in_view() - 1;
+        std::nth_element(clearances.begin(), least, clearances.end(), std::greater<>());
+        hidden.emplace_back(std::max(0.0, -*least), i);
+    }
+    std::ranges::sort(hidden);
+    RowMatrixXd poses(count, drawn.cols());
+    for (Index k = 0; k < count; ++k) {
+        poses.row(k) = drawn.row(hidden[static_cast<std::size_t>(k)].second);
+    }
+    return {std::move(poses), Seen::Constant(count, sensor.target_count(), true)};
 }
 
 ShownPoses random_poses(const Campaign& campaign, const Parameters& parameters, Index count,

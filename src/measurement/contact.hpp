@@ -37,6 +37,11 @@ ShownPoses draw_poses(const Campaign& campaign, const Parameters& parameters, In
 std::optional<ShownPoses> touching_poses(const Campaign& campaign, const Parameters& parameters,
                                          Index count, std::uint64_t seed);
 
+/// Of random_configurations() those that show a sensor with has_view() most of its
+/// targets, which are all taken as seen.
+ShownPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, Index count,
+                        std::uint64_t seed);
+
 /// Of random_configurations().
 ShownPoses random_poses(const Campaign& campaign, const Parameters& parameters, Index count,
                         std::uint64_t seed);

@@ -34,13 +34,18 @@ std::optional<ObservedPoints> KnownSensor::observed_points() const {
     if (!observed) return std::nullopt;
     // Where they are in the flange is what would be observed with the flange in the world's origin.
     const VectorXd in_flange =
-        observed->positions(sensor_->predict(Isometry3d::Identity(), unknowns_));
+        observed->in_flange
+            ? observed->in_flange(unknowns_)
+            : observed->positions(sensor_->predict(Isometry3d::Identity(), unknowns_),
+                                  SeenTargets::Constant(target_count(), true));
     std::vector<std::optional<Vector3d>> points;
     for (Index k = 0; k < observed->points.count(); ++k) {
         points.emplace_back(in_flange.segment<3>(3 * k));
     }
-    return ObservedPoints{Targets(points), observed->positions,
-                          [](const VectorXd& coordinates) { return coordinates; }};
+    return ObservedPoints{Targets(points),
+                          observed->positions,
+                          [](const VectorXd& coordinates) { return coordinates; },
+                          {}};
 }
 
 Campaign with_known_sensor(Campaign campaign, const VectorXd& unknowns) {

@@ -32,6 +32,12 @@ class KnownSensor final : public Sensor {
     }
 
     bool is_angle(Index row) const override { return sensor_->is_angle(row); }
+    bool has_pixels() const override { return sensor_->has_pixels(); }
+    bool has_view() const override { return sensor_->has_view(); }
+    VectorXd view_clearances(const Isometry3d& world_from_flange, const VectorXd&) const override {
+        return sensor_->view_clearances(world_from_flange, unknowns_);
+    }
+    Index least_in_view() const override { return sensor_->least_in_view(); }
     bool is_distance(Index row) const override { return sensor_->is_distance(row); }
     bool has_orientation() const override { return sensor_->has_orientation(); }
     Index target_count() const override { return sensor_->target_count(); }
@@ -57,6 +63,7 @@ class KnownSensor final : public Sensor {
     bool has_constant_covariance() const override { return sensor_->has_constant_covariance(); }
     std::vector<NoiseNumber> noise_numbers() const override { return sensor_->noise_numbers(); }
     SensorWords words() const override;
+    using Sensor::observed_points;
     std::optional<ObservedPoints> observed_points() const override;
 
   private:

@@ -59,7 +59,11 @@ struct MotionShares {
     double translation = 1;
     double turn = 0;  ///< rad for 1 m at the targets
 };
-MotionShares shares_of(const TargetGroup& group) {
+MotionShares shares_of(const Campaign& campaign, const TargetGroup& group) {
+    if (campaign.sensor->has_pixels()) {
+        const double turn = campaign.model_error_orientation;
+        return {1, campaign.model_error > 0 ? turn / campaign.model_error : 0};
+    }
     if (!(group.lever > 0)) return {};  // all in one place, which no turn moves
     return {std::sqrt(0.5), std::sqrt(0.75) / group.lever};
 }
@@ -93,21 +97,28 @@ void check_noise(const Campaign& campaign) {
     }
 }
 
-TwistMatrix model_error_twists(const Sensor& sensor, const Isometry3d& world_from_flange,
+TwistMatrix model_error_twists(const Campaign& campaign, const Isometry3d& world_from_flange,
                                const VectorXd& sensor_unknowns) {
-    const TargetGroup group = group_of_targets(sensor, sensor_unknowns);
+    TwistMatrix twists(6, 6);
+    set_model_error_twists(campaign, world_from_flange, sensor_unknowns, twists);
+    return twists;
+}
+
+void set_model_error_twists(const Campaign& campaign, const Isometry3d& world_from_flange,
+                            const VectorXd& sensor_unknowns, TwistMatrix& twists) {
+    const TargetGroup group = group_of_targets(*campaign.sensor, sensor_unknowns);
     const Vector3d p = world_from_flange * group.middle;
-    const auto [translation, turn] = shares_of(group);
-    TwistMatrix twists = TwistMatrix::Zero(6, 6);
+    const auto [translation, turn] = shares_of(campaign, group);
+    twists.setZero(6, 6);
     for (Index k = 0; k < 3; ++k) {
         twists(3 + k, k) = translation;
         twists(k, 3 + k) = turn;
         twists.block<3, 1>(3, 3 + k) = turn * p.cross(Vector3d::Unit(k));
     }
-    return twists;
 }
 
 double common_part(const Campaign& campaign) {
+    if (campaign.sensor->has_pixels()) return 1;
     if (campaign.sensor->seen_at_once() <= 1) return 0;
     return campaign.model_error_common.value_or(campaign.spread.is_prior ? usual_model_error_common
                                                                          : 0);
@@ -123,6 +134,7 @@ VectorXd own_model_errors(const Campaign& campaign) {
     for (Index row = 0; row < errors.size(); ++row) {
         errors[row] = campaign.sensor->is_angle(row) ? campaign.model_error_orientation : own;
     }
+    if (campaign.sensor->has_pixels()) errors.setZero();
     return errors;
 }
 
@@ -166,12 +178,12 @@ MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& moti
         const TargetGroup group = group_of_targets(*campaign.sensor, sensor_unknowns);
         const Vector3d p = motion.world_from_flange * group.middle;
         const Vector3d p_rate =
-            shares_of(group).turn * (direction.tail<3>() + direction.head<3>().cross(p));
+            shares_of(campaign, group).turn * (direction.tail<3>() + direction.head<3>().cross(p));
         TwistMatrix rates = TwistMatrix::Zero(6, 6);
         for (Index k = 0; k < 3; ++k) {
             rates.block<3, 1>(3, 3 + k) = p_rate.cross(Vector3d::Unit(k));
         }
-        add(model_error_twists(*campaign.sensor, motion.world_from_flange, sensor_unknowns), rates,
+        add(model_error_twists(campaign, motion.world_from_flange, sensor_unknowns), rates,
             VectorXd::Constant(6, common));
     }
     return covariance_rate;
@@ -240,15 +252,22 @@ void PoseNoise::add_effects(const FlangeMotion& motion, const VectorXd& sensor_u
         effect_.leftCols(joints) *= campaign_.joint_repeatability.asDiagonal();
     }
     if (common_ > 0) {
-        fill(model_error_twists(*campaign_.sensor, motion.world_from_flange, sensor_unknowns),
-             effect_.rightCols<6>());
+        set_model_error_twists(campaign_, motion.world_from_flange, sensor_unknowns, twists_);
+        fill(twists_, effect_.rightCols<6>());
         effect_.rightCols<6>() *= common_;
     }
     seen_effect_.resize(covariance_.rows(), effect_.cols());
     for (Index k = 0; k < covariance_.rows(); ++k) {
         seen_effect_.row(k) = effect_.row(rows_[static_cast<std::size_t>(k)]);
     }
+    raise_to_rounding(covariance_, seen_effect_.squaredNorm());
     covariance_.noalias() += seen_effect_ * seen_effect_.transpose();
+}
+
+void raise_to_rounding(MatrixXd& covariance, double trace) {
+    constexpr double rounding = 1e-14;
+    if (covariance.diagonal().minCoeff() > rounding * trace) return;
+    covariance.diagonal().array() += rounding * trace;
 }
 
 Index PoseNoise::whiten_seen(const FlangeMotion& motion, const VectorXd& sensor_unknowns,

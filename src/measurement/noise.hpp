@@ -12,16 +12,20 @@ namespace posewise::detail {
 void check_noise(const Campaign& campaign);
 
 /// Campaign::model_error_common; 0 where a pose shows one point or one body, which has nothing to
-/// share with another.
+/// share with another; 1 for pixels.
 double common_part(const Campaign& campaign);
 /// Standard deviation of what a pose's targets share of the model error, m.
 double common_model_error(const Campaign& campaign);
 /// The motions of the flange that it consists of, each with that deviation: three translations
 /// along the world's axes and three turns about them through the middle of the targets, scaled so
 /// that a target at the RMS distance from the middle moves by 1 (RMS of a coordinate), half of its
-/// square by each kind.
-TwistMatrix model_error_twists(const Sensor& sensor, const Isometry3d& world_from_flange,
+/// square by each kind. Of a sensor of pixels they have the deviations Campaign::model_error and
+/// model_error_orientation instead, about its point on the flange.
+TwistMatrix model_error_twists(const Campaign& campaign, const Isometry3d& world_from_flange,
                                const VectorXd& sensor_unknowns);
+/// The same in memory that is there.
+void set_model_error_twists(const Campaign& campaign, const Isometry3d& world_from_flange,
+                            const VectorXd& sensor_unknowns, TwistMatrix& twists);
 /// Standard deviations of the model error that each of the sensor's rows has by itself, m or rad.
 VectorXd own_model_errors(const Campaign& campaign);
 
@@ -80,6 +84,7 @@ class PoseNoise {
     double common_;           ///< common_model_error()
     VectorXd own_variances_;  ///< one a row of the sensor; so are the rows of what follows
     MatrixXd of_sensor_;
+    TwistMatrix twists_;  ///< model_error_twists()
     RowMatrixXd effect_;  ///< by one standard deviation of each joint, then of each motion
     std::vector<Index> rows_;
     VectorXd repeats_;     ///< that covariance_ is of
@@ -87,6 +92,10 @@ class PoseNoise {
     RowMatrixXd seen_effect_;
     MatrixXd factor_;
 };
+
+/// Before a product of columns and their transpose is added, which has that trace: where rounding
+/// would leave nothing of the covariance, as beside a camera's lens, it counts as large as that.
+void raise_to_rounding(MatrixXd& covariance, double trace);
 
 /// L such that covariance = L L^T, for drawing noise. Throws InputError if the covariance is not
 /// positive definite.

@@ -82,7 +82,10 @@ SensorWords PointSensor::words() const {
 
 std::optional<ObservedPoints> PointSensor::observed_points() const {
     const auto as_they_are = [](const VectorXd& values) { return values; };
-    return ObservedPoints{targets_, as_they_are, as_they_are};
+    return ObservedPoints{targets_,
+                          [](const VectorXd& values, const SeenTargets&) { return values; },
+                          as_they_are,
+                          {}};
 }
 
 }  // namespace posewise

@@ -8,6 +8,7 @@
 #include "posewise/core/types.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/model/chain.hpp"
+#include "rigid_points.hpp"
 
 namespace posewise {
 
@@ -18,29 +19,11 @@ std::vector<std::optional<Vector3d>> origin_of(const std::optional<Isometry3d>& 
     return {Vector3d(tool->translation())};
 }
 
-// ---- A body as four points: its origin and one on each axis ----
-
-constexpr double along_axis = 0.3;  // m
-
-Eigen::Matrix3Xd points_of(const Isometry3d& frame) {
-    Eigen::Matrix3Xd points = frame.translation().replicate<1, 4>();
-    points.rightCols<3>() += along_axis * frame.linear();
-    return points;
-}
-
-Isometry3d frame_of(const VectorXd& points) {
-    Isometry3d frame = Isometry3d::Identity();
-    frame.translation() = points.head<3>();
-    const Eigen::Map<const Matrix3d> tips(points.data() + 3);
-    frame.linear() = nearest_rotation((tips.colwise() - points.head<3>()) / along_axis);
-    return frame;
-}
-
-VectorXd points_observed(const VectorXd& pose) {
+VectorXd points_observed(const VectorXd& pose, const SeenTargets&) {
     Isometry3d body = Isometry3d::Identity();
     body.translation() = pose.head<3>();
     body.linear() = rotation_from_vector(pose.tail<3>());
-    return points_of(body).reshaped();
+    return detail::points_of(body).reshaped();
 }
 
 }  // namespace
@@ -186,13 +169,10 @@ SensorWords PoseSensor::words() const {
 }
 
 std::optional<ObservedPoints> PoseSensor::observed_points() const {
-    std::vector<std::optional<Vector3d>> points(4);
-    const Eigen::Matrix3Xd known = points_of(known_tool_.value_or(Isometry3d::Identity()));
-    for (Index k = 0; k < 4 && known_tool_; ++k) points[static_cast<std::size_t>(k)] = known.col(k);
     const auto unknowns = [is_known = known_tool_.has_value()](const VectorXd& coordinates) {
-        return is_known ? coordinates : tool_unknowns(frame_of(coordinates));
+        return is_known ? coordinates : tool_unknowns(detail::frame_of(coordinates));
     };
-    return ObservedPoints{Targets(points), points_observed, unknowns};
+    return ObservedPoints{detail::rigid_targets(known_tool_), points_observed, unknowns, {}};
 }
 
 void invert_poses(RowMatrixXd& poses) {

@@ -35,7 +35,7 @@ std::string describe_sigmas(const Sensor& sensor) {
         if (count == 0) continue;
         text += fmt::format("{} {} {}", text.empty() ? "sigma" : " and",
                             detail::format_short(mm_per_m * std::sqrt(squares / count)),
-                            units_of(of_angles).error);
+                            sensor.units(of_angles).error);
     }
     return text;
 }
@@ -50,6 +50,12 @@ Isometry3d detail::moved(const Isometry3d& flange, const Twist& twist) {
 
 std::vector<bool> Sensor::unknown_is_angle() const {
     return std::vector<bool>(unknown_names().size(), false);
+}
+
+std::vector<const AmountUnits*> Sensor::unknown_units() const {
+    std::vector<const AmountUnits*> units;
+    for (const bool is_angle : unknown_is_angle()) units.push_back(&units_of(is_angle));
+    return units;
 }
 
 VectorXd Sensor::predict(const Isometry3d& world_from_flange, const VectorXd& unknowns) const {
@@ -85,7 +91,7 @@ Index Sensor::count_angles() const {
 void Sensor::differentiate_positions(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                                      const VectorXd& unknowns,
                                      Eigen::Ref<RowMatrixXd> J_positions_parameters) const {
-    if (target_count() == targets().count()) {
+    if (J_positions_parameters.rows() == 3 * targets().count()) {
         targets().differentiate(world_from_flange, twists, unknowns, J_positions_parameters);
         return;
     }
@@ -117,7 +123,7 @@ MatrixXd Sensor::covariance_rate(const Isometry3d& world_from_flange, const Twis
 
 bool Sensor::observes_targets() const {
     const std::optional<ObservedPoints> observed = observed_points();
-    return observed && observed->points.count() == target_count() &&
+    return observed && !has_pixels() && observed->points.count() == target_count() &&
            static_cast<Index>(unknown_names().size()) == targets().unknown_count();
 }
 
@@ -126,7 +132,7 @@ std::vector<NoiseNumber> Sensor::noise_numbers() const {
     std::vector<NoiseNumber> numbers;
     Index row = 0;
     for (const std::string& name : observation_names()) {
-        const std::string unit(units_of(is_angle(row)).si);
+        const std::string unit(units(is_angle(row)).si);
         numbers.push_back({"sigma_" + name + '_' + unit, {sigmas[row]}});
         ++row;
     }

@@ -142,6 +142,8 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
     const double common = detail::common_model_error(campaign);
     const VectorXd own_errors = detail::own_model_errors(campaign);
     RowMatrixXd effect(rows, 6);
+    TwistMatrix twists(6, 6);
+    VectorXd motion(6);
     const bool has_contacts = sensor.has_contacts();
     Measurements measurements;
     measurements.configurations = configurations;
@@ -169,9 +171,10 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
         detail::fill_normals(stream, drawn);
         drawn.array() *= own_errors.array();
         if (common > 0) {
-            sensor.differentiate(flange, detail::model_error_twists(sensor, flange, truth.sensor),
-                                 truth.sensor, effect);
-            drawn += common * effect * stream.normals(6);
+            detail::set_model_error_twists(campaign, flange, truth.sensor, twists);
+            sensor.differentiate(flange, twists, truth.sensor, effect);
+            detail::fill_normals(stream, motion);
+            drawn.noalias() += common * effect * motion;
         }
         sensor.deviate(predicted, drawn, expected);
         if (i == 0 || !sensor.has_constant_covariance()) {

@@ -156,7 +156,7 @@ PositionErrors make_position_errors(const Campaign& campaign, const RowMatrixXd&
                                     Index target) {
     PositionErrors errors;
     errors.by_parameters = make_prediction_blocks(campaign, campaign.nominal, workspace, target);
-    const Index all = 3 * campaign.sensor->target_count();
+    const Index all = 3 * campaign.sensor->position_count();
     const Index rows = target < 0 ? all : 3;
     const Index first = target < 0 ? 0 : 3 * target;
     const auto add = [&](Blocks& effects, const VectorXd& sizes, auto twists_of) {
@@ -177,7 +177,7 @@ PositionErrors make_position_errors(const Campaign& campaign, const RowMatrixXd&
         [](const FlangeMotion& motion) { return motion.joint_twists; });
     add(errors.by_model, VectorXd::Constant(6, detail::common_model_error(campaign)),
         [&](const FlangeMotion& motion) {
-            return detail::model_error_twists(*campaign.sensor, motion.world_from_flange,
+            return detail::model_error_twists(campaign, motion.world_from_flange,
                                               campaign.nominal.sensor);
         });
     errors.own_error = std::sqrt(1 - detail::common_part(campaign)) * campaign.model_error;

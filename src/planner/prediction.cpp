@@ -16,7 +16,7 @@ namespace posewise {
 
 Blocks make_prediction_blocks(const Campaign& campaign, const Parameters& parameters,
                               const RowMatrixXd& workspace, Index target) {
-    const Index targets = campaign.sensor->target_count();
+    const Index targets = campaign.sensor->position_count();
     if (target < -1 || target >= targets) {
         throw InputError("target " + std::to_string(target + 1) + " to predict: the sensor has " +
                          std::to_string(targets));

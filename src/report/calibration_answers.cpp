@@ -81,12 +81,12 @@ Judged judge(const Calibration& calibration) {
 }
 
 /// "0.1234 to 0.2 mm".
-std::string format_interval(const RmsInterval& interval, bool is_angle) {
+std::string format_interval(const RmsInterval& interval, const AmountUnits& units) {
     return fmt::format("{} to {}", format_short(mm_per_m * interval.lower, 4),
-                       format_error(interval.upper, is_angle));
+                       format_error(interval.upper, units));
 }
 
-std::string sum_up(const Calibration& calibration, const Judged& judged, bool is_angle) {
+std::string sum_up(const Calibration& calibration, const Judged& judged, const AmountUnits& units) {
     // The nominal robot at the same poses, base and targets fitted to the others as well.
     const auto& comparison = calibration.held_out_comparison;
     const bool is_compared = !judged.group && comparison;
@@ -94,16 +94,16 @@ std::string sum_up(const Calibration& calibration, const Judged& judged, bool is
     const double found = judged.found.rms();
     std::string text;
     if (!calibration.faults.empty()) text = "no calibration, " + calibration.faults.front() + "; ";
-    text += fmt::format("calibrated {} RMS", format_error(found, is_angle));
+    text += fmt::format("calibrated {} RMS", format_error(found, units));
     if (calibration.campaign.sensor->lengths_per_target() == 1) text += " of one length";
     if (judged.interval) {
-        text += fmt::format(" (95 %: {})", format_interval(*judged.interval, is_angle));
+        text += fmt::format(" (95 %: {})", format_interval(*judged.interval, units));
     }
     text += fmt::format(" {}", judged.where);
     if (calibration.campaign.robot.parameter_count() == 0) {
         text += "; the robot is taken as it is";
     } else {
-        text += fmt::format("; before {}{}", format_error(nominal, is_angle),
+        text += fmt::format("; before {}{}", format_error(nominal, units),
                             judged.group ? " at the poses calibrated with" : "");
         if (!judged.group && found >= nominal) text += ", which is no worse";
     }
@@ -126,10 +126,11 @@ std::string describe_sureness(const Calibration& calibration, const Judged& judg
 /// The error expected beside the one found: at the poses judged, or, where parameters take up
 /// little of what is measured, at those held out (else a pose held out is known worse than one that
 /// was used).
-std::string compare_expected(const Calibration& calibration, const Judged& judged, bool is_angle) {
+std::string compare_expected(const Calibration& calibration, const Judged& judged,
+                             const AmountUnits& units) {
     const auto sentence = [&](double expected, double found, const char* verdict) {
-        return fmt::format("{} expected {}, {} found: {}", format_error(expected, is_angle),
-                           judged.where, format_error(found, is_angle), verdict);
+        return fmt::format("{} expected {}, {} found: {}", format_error(expected, units),
+                           judged.where, format_error(found, units), verdict);
     };
     if (judged.group) {
         const JudgedGroup& group = *judged.group;
@@ -155,14 +156,14 @@ std::string compare_expected(const Calibration& calibration, const Judged& judge
 }
 
 /// The largest part of what is expected over the workspace, or else at the poses measured.
-std::string describe_limit(const Calibration& calibration, bool is_angle) {
+std::string describe_limit(const Calibration& calibration, const AmountUnits& units) {
     const auto& workspace = calibration.expected_workspace;
     const ExpectedError& error = workspace ? *workspace : calibration.expected;
     std::string text = detail::describe_largest(
         {{error.model, "what the robot's model cannot express"},
          {error.parameters, "parameters that the poses leave uncertain"},
          {error.noise, "the instrument's noise and the joints' repeatability"}},
-        error.total(), is_angle);
+        error.total(), units);
     if (text.empty()) return text;
     text += workspace ? " expected over the workspace" : " expected at poses like these";
     if (!calibration.cures.found.empty()) {
@@ -179,14 +180,14 @@ std::string describe_limit(const Calibration& calibration, bool is_angle) {
     return text;
 }
 
-std::string describe_influence(const Calibration& calibration, bool is_angle) {
+std::string describe_influence(const Calibration& calibration, const AmountUnits& units) {
     if (!calibration.influence) return "not known: nothing was held out";
     const auto& [id, fit, held_out, is_alone] = *calibration.influence;
     constexpr double little = 1.3;
     return fmt::format("{}{}: predicted by the {} it is missed by {}, with it by {}",
                        held_out < little * fit ? "none stands out; most does " : "",
                        detail::quote(id), is_alone ? "others" : "other groups",
-                       format_error(held_out, is_angle), format_error(fit, is_angle));
+                       format_error(held_out, units), format_error(fit, units));
 }
 
 /// "; with the temperature (2.4 C): z changes by 0.012 mm per C, give or take 0.004 mm, p = 0.001".
@@ -194,12 +195,15 @@ std::string describe_conditions(const Calibration& calibration) {
     std::string text;
     for (const ConditionTrend& condition : calibration.condition_trends) {
         const OrderSlope& worst = condition.trend.worst();
-        text += fmt::format(
-            "; by the {} ({} {}): {} changes by {} per {}, give or take {}, p = {}", condition.name,
-            format_short(condition.range, 3), condition.unit, worst.axis,
-            format_error(worst.change / condition.range, worst.is_angle), condition.unit,
-            format_error(worst.detectable / condition.range, worst.is_angle),
-            format_short(worst.probability, 2));
+        text += fmt::format("; by the {} ({} {}): {} changes by {} per {}, give or take {}, p = {}",
+                            condition.name, format_short(condition.range, 3), condition.unit,
+                            worst.axis,
+                            format_error(worst.change / condition.range,
+                                         calibration.campaign.sensor->units(worst.is_angle)),
+                            condition.unit,
+                            format_error(worst.detectable / condition.range,
+                                         calibration.campaign.sensor->units(worst.is_angle)),
+                            format_short(worst.probability, 2));
     }
     return text;
 }
@@ -210,14 +214,15 @@ std::string describe_order(const Calibration& calibration) {
     const OrderSlope& worst = trend.worst();
     const std::string size = fmt::format(
         "{} changes by {} from first to last, p = {}{}", worst.axis,
-        format_error(worst.change, worst.is_angle), format_short(worst.probability, 2),
+        format_error(worst.change, calibration.campaign.sensor->units(worst.is_angle)),
+        format_short(worst.probability, 2),
         trend.is_beside_joints ? ""
                                : "; the order of the poses themselves could look like this, too");
     if (trend.is_plain()) {
         return fmt::format(
             "yes, residuals follow the order of the measurements: {}; the first "
             "tenth is off the rest by {}",
-            size, format_error(worst.early, worst.is_angle));
+            size, format_error(worst.early, calibration.campaign.sensor->units(worst.is_angle)));
     }
     if (trend.is_possible()) return "perhaps: " + size;
     double detectable = 0;
@@ -229,13 +234,14 @@ std::string describe_order(const Calibration& calibration) {
     }
     const Metrics& fit = calibration.estimate.fit;
     const double left = worst.is_angle ? fit.orientation_rms : fit.rms();
-    return fmt::format("{}; a drift of {} from first to last would have been seen",
-                       detectable > left ? "none so large that it could be seen" : "none seen",
-                       format_error(detectable, worst.is_angle));
+    return fmt::format(
+        "{}; a drift of {} from first to last would have been seen",
+        detectable > left ? "none so large that it could be seen" : "none seen",
+        format_error(detectable, calibration.campaign.sensor->units(worst.is_angle)));
 }
 
 /// More configurations lower the parameters' variance alone, as 1 / n.
-std::string describe_more(const Calibration& calibration, bool is_angle) {
+std::string describe_more(const Calibration& calibration, const AmountUnits& units) {
     constexpr double wanted = 0.8;
     const ExpectedError& error =
         calibration.expected_workspace ? *calibration.expected_workspace : calibration.expected;
@@ -249,7 +255,7 @@ std::string describe_more(const Calibration& calibration, bool is_angle) {
         return fmt::format(
             "no number does: {} of the {} expected would be left if all parameters were known; a "
             "better model or instrument helps",
-            format_error(std::sqrt(rest), is_angle), format_error(error.total(), is_angle));
+            format_error(std::sqrt(rest), units), format_error(error.total(), units));
     }
     return fmt::format("about {} more, if they tell as much as those measured",
                        count_of(static_cast<Index>(more), "configuration"));
@@ -275,7 +281,8 @@ std::string judge_residuals(const Calibration& calibration, const ResidualDoubt&
     }
     if (doubt.fitting == 0) return text;
     return text + fmt::format(", as a model error of {} would leave",
-                              format_error(doubt.fitting, doubt.is_angle));
+                              format_error(doubt.fitting,
+                                           calibration.campaign.sensor->units(doubt.is_angle)));
 }
 
 std::string judge_residuals(const Calibration& calibration) {
@@ -309,18 +316,18 @@ std::string judge_compliances(const Calibration& calibration) {
 
 std::vector<Answer> answer(const Calibration& calibration) {
     if (!calibration.is_identified()) return {};
-    const bool is_angle = !calibration.campaign.sensor->has_lengths();
+    const AmountUnits& units = calibration.campaign.sensor->main_units();
     const Judged judged = judge(calibration);
-    std::vector<Answer> answers{{"accuracy", "How accurate", sum_up(calibration, judged, is_angle)},
+    std::vector<Answer> answers{{"accuracy", "How accurate", sum_up(calibration, judged, units)},
                                 {"sureness", "How sure", describe_sureness(calibration, judged)}};
     const auto add = [&](const char* key, const char* question, const std::string& text) {
         if (!text.empty()) answers.push_back({key, question, text});
     };
-    add("expected", "As expected", compare_expected(calibration, judged, is_angle));
-    add("limit", "What limits it", describe_limit(calibration, is_angle));
-    add("influence", "Which pose matters most", describe_influence(calibration, is_angle));
+    add("expected", "As expected", compare_expected(calibration, judged, units));
+    add("limit", "What limits it", describe_limit(calibration, units));
+    add("influence", "Which pose matters most", describe_influence(calibration, units));
     add("drift", "Drift", describe_order(calibration) + describe_conditions(calibration));
-    add("more", "More poses for 20 % less", describe_more(calibration, is_angle));
+    add("more", "More poses for 20 % less", describe_more(calibration, units));
     add("residuals", "Residuals", judge_residuals(calibration));
     add("missing_errors", "Errors left out", describe_missing_errors(calibration));
     add("negative_compliances", "Compliances", judge_compliances(calibration));

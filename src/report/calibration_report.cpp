@@ -119,6 +119,7 @@ std::string format_refitted(const Calibration& calibration) {
 
 std::string describe_noise_floor(const Calibration& calibration) {
     const auto& repeatability = calibration.repeatability;
+    if (calibration.campaign.sensor->has_pixels()) return "";
     if (!repeatability) return "noise floor: unknown, no configuration was repeated\n";
     std::string text = fmt::format("noise floor from repeats: {} mm per coordinate",
                                    detail::format_mm(repeatability->length, 5));
@@ -129,26 +130,27 @@ std::string describe_noise_floor(const Calibration& calibration) {
     return text + '\n';
 }
 
-std::string describe(const ExpectedError& expected, const std::string& where, bool is_angle) {
+std::string describe(const ExpectedError& expected, const std::string& where,
+                     const AmountUnits& units) {
     return fmt::format("expected {}: {} (parameters {}, left over {}, instrument {})", where,
-                       detail::format_error(expected.total(), is_angle),
-                       detail::format_error(expected.parameters, is_angle),
-                       detail::format_error(expected.model, is_angle),
-                       detail::format_error(expected.noise, is_angle));
+                       detail::format_error(expected.total(), units),
+                       detail::format_error(expected.parameters, units),
+                       detail::format_error(expected.model, units),
+                       detail::format_error(expected.noise, units));
 }
 
 /// What points not used will be off by, so far as the calibration can know.
 std::string describe_expected(const Calibration& calibration) {
-    const bool is_angle = !calibration.campaign.sensor->has_lengths();
-    std::string text = describe(calibration.expected, "at poses like these", is_angle) + '\n';
+    const AmountUnits& units = calibration.campaign.sensor->main_units();
+    std::string text = describe(calibration.expected, "at poses like these", units) + '\n';
     if (calibration.expected_workspace) {
-        text += describe(*calibration.expected_workspace, "over the workspace", is_angle) + '\n';
+        text += describe(*calibration.expected_workspace, "over the workspace", units) + '\n';
     } else if (!calibration.campaign.sensor->has_contacts()) {
         text +=
             "expected over the workspace: not known; the joint limits or the cell leave no poses\n";
     }
     const auto add = [&](const std::optional<Judgement>& judged, const char* where) {
-        if (judged && judged->expected) text += describe(*judged->expected, where, is_angle) + '\n';
+        if (judged && judged->expected) text += describe(*judged->expected, where, units) + '\n';
     };
     add(calibration.verification, "at the verification");
     add(calibration.left_out, "not in plan");
@@ -158,8 +160,12 @@ std::string describe_expected(const Calibration& calibration) {
         const auto where =
             fmt::format("at the {} to predict",
                         detail::count_of(static_cast<Index>(prediction.each.size()), "pose"));
-        text += describe(prediction.overall, where, prediction.is_angle) + ", 95 % are below " +
-                detail::format_error(prediction.overall.percentile95, prediction.is_angle) + '\n';
+        text += describe(prediction.overall, where,
+                         calibration.campaign.sensor->units(prediction.is_angle)) +
+                ", 95 % are below " +
+                detail::format_error(prediction.overall.percentile95,
+                                     calibration.campaign.sensor->units(prediction.is_angle)) +
+                '\n';
     }
     return text + describe(calibration.predicted_beyond, "to predict");
 }
@@ -194,18 +200,18 @@ std::string format_accuracy(const Calibration& calibration) {
 
 std::string count_outliers(Index count) { return detail::count_of(count, "outlier"); }
 
-std::string format_without_outliers(const WithoutOutliers& others, bool is_angle) {
-    const auto one = [is_angle](double rms, const std::optional<double>& angle) {
-        std::string text = detail::format_error(rms, is_angle);
+std::string format_without_outliers(const WithoutOutliers& others, const AmountUnits& units) {
+    const auto one = [&units](double rms, const std::optional<double>& angle) {
+        std::string text = detail::format_error(rms, units);
         return angle ? text + " and " + detail::format_error(*angle, true) : text;
     };
     std::string text = "without them: means " + one(others.fit_rms, others.fit_angle_rms);
     if (others.held_out_rms) {
         text += ", held-out means " + one(*others.held_out_rms, others.held_out_angle_rms);
     }
-    return text + (others.fit_angle_rms ? " (RMS of distances and of orientations)\n"
-                   : is_angle           ? " (RMS)\n"
-                                        : " (distance RMS)\n");
+    return text + (others.fit_angle_rms      ? " (RMS of distances and of orientations)\n"
+                   : &units != &length_units ? " (RMS)\n"
+                                             : " (distance RMS)\n");
 }
 
 std::string format_outliers(const Calibration& calibration) {
@@ -218,7 +224,7 @@ std::string format_outliers(const Calibration& calibration) {
     if (count == 0) return text;
     if (calibration.without_outliers) {
         text += format_without_outliers(*calibration.without_outliers,
-                                        !calibration.campaign.sensor->has_lengths());
+                                        calibration.campaign.sensor->main_units());
     }
     text += format_section("Outliers, farthest first",
                            detail::outlier_table(calibration.campaign, estimate, outliers_shown));

@@ -32,8 +32,11 @@ std::vector<MetricRow> list_metric_rows(const Metrics& example) {
         rows.push_back({name + " max", [=](const Metrics& m) { return m.coordinate_max[axis]; }});
     }
     if (example.has_orientation) {
-        rows.push_back({"turn RMS/mrad", [](const Metrics& m) { return m.orientation_rms; }});
-        rows.push_back({"turn max/mrad", [](const Metrics& m) { return m.orientation_max; }});
+        const bool are_pixels = example.orientation_units == &pixel_units;
+        rows.push_back({are_pixels ? "reprojection RMS/px" : "turn RMS/mrad",
+                        [](const Metrics& m) { return m.orientation_rms; }});
+        rows.push_back({are_pixels ? "reprojection max/px" : "turn max/mrad",
+                        [](const Metrics& m) { return m.orientation_max; }});
     }
     return rows;
 }
@@ -54,9 +57,9 @@ VectorXd flatten(const Campaign& campaign, const Parameters& parameters) {
 
 const std::initializer_list<std::string> deviation_header{"std. dev.", ""};
 
-void add_deviation(std::vector<std::string>& row, double deviation, bool is_angle) {
+void add_deviation(std::vector<std::string>& row, double deviation, const AmountUnits& units) {
     row.push_back(format_fixed(mm_per_m * deviation, 4));
-    row.emplace_back(units_of(is_angle).error);
+    row.emplace_back(units.error);
 }
 
 }  // namespace
@@ -78,13 +81,14 @@ Table metrics_table(const std::vector<std::pair<std::string, Metrics>>& columns)
 Table value_table(const Campaign& campaign, const Parameters& parameters) {
     const VectorXd values = flatten(campaign, parameters);
     const auto names = parameter_names(campaign);
-    const auto is_angle = parameter_is_angle(campaign);
+    const auto units_of_all = parameter_units(campaign);
     Table table{{"parameter", "value", ""}, {}};
     for (Index k = 0; k < values.size(); ++k) {
         const auto i = static_cast<std::size_t>(k);
         // The base's turn is no small error.
-        const bool in_degrees = k < base_parameter_count(campaign) && is_angle[i];
-        const AmountUnits& units = units_of(is_angle[i]);
+        const bool in_degrees =
+            k < base_parameter_count(campaign) && units_of_all[i] == &angle_units;
+        const AmountUnits& units = *units_of_all[i];
         const double value = in_degrees ? units.to_reading(values[k]) : mm_per_m * values[k];
         table.rows.push_back({names[i], format_fixed(value, 4),
                               std::string(in_degrees ? units.reading : units.error)});
@@ -94,11 +98,11 @@ Table value_table(const Campaign& campaign, const Parameters& parameters) {
 
 Table parameter_table(const Campaign& campaign, const Estimate& estimate) {
     const VectorXd deviations = standard_deviations(estimate);
-    const auto is_angle = parameter_is_angle(campaign);
+    const auto units_of_all = parameter_units(campaign);
     Table table = value_table(campaign, estimate.parameters);
     table.header.insert(table.header.end(), deviation_header);
     for (std::size_t k = 0; k < table.rows.size(); ++k) {
-        add_deviation(table.rows[k], deviations[static_cast<Index>(k)], is_angle[k]);
+        add_deviation(table.rows[k], deviations[static_cast<Index>(k)], *units_of_all[k]);
     }
     return table;
 }
@@ -106,13 +110,13 @@ Table parameter_table(const Campaign& campaign, const Estimate& estimate) {
 Table refitted_table(const Calibration& calibration) {
     if (!calibration.refitted) return {};
     const Campaign& campaign = *calibration.refitted;
-    const auto is_angle = parameter_is_angle(campaign);
+    const auto units_of_all = parameter_units(campaign);
     Table table = value_table(campaign, campaign.nominal);
     table.header.insert(table.header.end(), deviation_header);
     for (std::size_t k = 0; k < table.rows.size(); ++k) {
         const auto sigma = calibration.refitted_sigmas.find(table.rows[k].front());
         if (sigma == calibration.refitted_sigmas.end()) continue;  // the robot's
-        add_deviation(table.rows[k], sigma->second, is_angle[k]);
+        add_deviation(table.rows[k], sigma->second, *units_of_all[k]);
     }
     const auto begin = table.rows.begin() + base_parameter_count(campaign);
     table.rows.erase(begin, begin + campaign.robot.parameter_count());

@@ -101,6 +101,39 @@ std::string describe_distance(const DistanceDoubt& distance) {
         detail::quote(distance.from), detail::format_short(mm_per_m * distance.found, 4));
 }
 
+void describe_camera(const CameraDoubt& doubt, const std::string& at,
+                     std::vector<std::string>& sentences) {
+    if (doubt.board_factor != 1) {
+        const std::string size =
+            doubt.square > 0
+                ? fmt::format("squares of {} mm fit, not of {} mm",
+                              detail::format_short(mm_per_m * doubt.square * doubt.board_factor, 4),
+                              detail::format_short(mm_per_m * doubt.square, 4))
+                : fmt::format("a board {} times as large as stated fits",
+                              detail::format_short(doubt.board_factor, 4));
+        sentences.push_back(
+            fmt::format("{}{} (calibrated, the robot misses the corners by {} instead of {} px "
+                        "RMS): measure the "
+                        "board",
+                        at, size, detail::format_short(1e3 * doubt.scaled_misfit, 3),
+                        detail::format_short(1e3 * doubt.misfit, 3)));
+    }
+    if (const auto& point = doubt.principal_point) {
+        sentences.push_back(fmt::format(
+            "{}the principal point ({:.0f}, {:.0f}) px is far from the middle of {} ({:.0f}, "
+            "{:.0f}): are the intrinsics of this image, neither scaled, cropped nor turned?",
+            at, (*point)[0], (*point)[1], doubt.is_of_image ? "the image" : "what is seen",
+            doubt.middle[0], doubt.middle[1]));
+    }
+    if (doubt.is_seen_from_back) {
+        sentences.push_back(
+            at +
+            "the board is seen from behind: corners are numbered in mirrored order, or y "
+            "points upwards on it (then state sensor.view.front: +z); poses planned would "
+            "show its back");
+    }
+}
+
 std::string describe_no_length(const Sensor& sensor) {
     return fmt::format(
         "no length is stated: how large the robot is follows from its nominal lengths alone; state "
@@ -113,12 +146,12 @@ std::string describe_no_length(const Sensor& sensor) {
 }
 
 std::string describe_held_out(const Campaign& campaign, const HeldOutComparison& held_out) {
-    const bool is_angle = !campaign.sensor->has_lengths();
+    const AmountUnits& units = campaign.sensor->main_units();
     return fmt::format(
         "poses that were held out are missed by {}, by the nominal robot by {}: the calibration is "
         "not shown to be better than none",
-        detail::format_error(held_out.calibrated, is_angle),
-        detail::format_error(held_out.nominal, is_angle));
+        detail::format_error(held_out.calibrated, units),
+        detail::format_error(held_out.nominal, units));
 }
 
 }  // namespace
@@ -133,6 +166,7 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
         sentences.push_back(at + describe_misfit(calibration.campaign, *doubts.misfit));
     }
     if (!doubts.planes.empty()) sentences.push_back(at + describe_planes(doubts.planes));
+    if (doubts.camera) describe_camera(*doubts.camera, at, sentences);
     if (!doubts.places.empty() && !has_moved)
         sentences.push_back(at + describe_places(doubts.places));
     if (doubts.gross_error && !has_moved) {
@@ -191,12 +225,12 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
         sentences.push_back(at + describe_held_out(calibration.campaign, *doubts.held_out));
     }
     if (const auto& workspace = doubts.workspace) {
-        const bool is_angle = !calibration.campaign.sensor->has_lengths();
+        const AmountUnits& units = calibration.campaign.sensor->main_units();
         sentences.push_back(fmt::format(
             "{}it is expected to miss poses of the workspace by {}, the nominal robot misses those "
             "measured by {}: too few poses, or too much alike, to calibrate it by",
-            at, detail::format_error(workspace->expected, is_angle),
-            detail::format_error(workspace->nominal, is_angle)));
+            at, detail::format_error(workspace->expected, units),
+            detail::format_error(workspace->nominal, units)));
     }
     if (sentences.empty() && calibration.faults.empty()) return sentences;
     for (const Cure& cure : calibration.cures.found) {

@@ -18,10 +18,8 @@ namespace {
 
 /// "1 mm Tx2 = 1 mm Tx1 - 0.78 mrad dq2". Both units are a thousandth of SI, so coefficients stay.
 std::string format_absorbed(const DroppedParameter& dropped, const std::vector<std::string>& names,
-                            const std::vector<bool>& is_angle) {
-    const auto unit = [&](Index k) {
-        return units_of(is_angle[static_cast<std::size_t>(k)]).error;
-    };
+                            const std::vector<const AmountUnits*>& units) {
+    const auto unit = [&](Index k) { return units[static_cast<std::size_t>(k)]->error; };
     const auto name = [&](Index k) { return names[static_cast<std::size_t>(k)]; };
     if (dropped.absorbed_by.empty()) return "moves no target";
     std::string text;
@@ -36,17 +34,17 @@ std::string format_absorbed(const DroppedParameter& dropped, const std::vector<s
 
 detail::Table parameter_table(const Campaign& campaign, const Identifiability& identifiability) {
     const auto names = parameter_names(campaign);
-    const auto is_angle = parameter_is_angle(campaign);
+    const auto units = parameter_units(campaign);
     const VectorXd scale = parameter_scale(campaign);
     std::map<Index, std::string> absorbed;
     for (const DroppedParameter& dropped : identifiability.dropped) {
-        absorbed[dropped.parameter] = format_absorbed(dropped, names, is_angle);
+        absorbed[dropped.parameter] = format_absorbed(dropped, names, units);
     }
     detail::Table table{{"parameter", "unit", "expected error", "identifiable", "absorbed by"}, {}};
     for (std::size_t k = 0; k < names.size(); ++k) {
         const auto index = static_cast<Index>(k);
         const bool kept = absorbed.count(index) == 0;
-        table.rows.push_back({names[k], std::string(units_of(is_angle[k]).error),
+        table.rows.push_back({names[k], std::string(units[k]->error),
                               detail::format_short(mm_per_m * scale[index]), kept ? "yes" : "no",
                               kept ? "" : absorbed[index]});
     }

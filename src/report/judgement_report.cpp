@@ -27,11 +27,11 @@ std::string describe_poses(const JudgedGroup& group) {
                                        count_of(count, "pose"), fmt::join(group.joints, ", ")));
 }
 
-std::string describe_interval(const JudgedGroup& group, bool is_angle) {
+std::string describe_interval(const JudgedGroup& group, const AmountUnits& units) {
     if (!group.interval) return ", interval unknown: as much was fitted to them as they tell";
     const auto& [lower, upper, freedom] = *group.interval;
     return fmt::format(", with 95 % {}..{} ({} degrees of freedom)",
-                       format_short(mm_per_m * lower, 4), format_error(upper, is_angle),
+                       format_short(mm_per_m * lower, 4), format_error(upper, units),
                        format_short(freedom, 3));
 }
 
@@ -68,13 +68,13 @@ std::string describe_verdict(const Calibration& calibration, const Kind& kind, b
         case ChanceVerdict::Beyond:
             break;
     }
-    const bool is_angle = !calibration.campaign.sensor->has_lengths();
+    const AmountUnits& units = calibration.campaign.sensor->main_units();
     const std::string beyond =
         fmt::format("{}, beyond chance (up to {}): ", times, format_short(group.chance, 3));
     if (group.worst && !has_moved) {
         return beyond + fmt::format("most of it is of {}, the others have {}",
                                     quote(group.worst->id),
-                                    format_error(group.worst->without, is_angle));
+                                    format_error(group.worst->without, units));
     }
     return beyond + (has_moved     ? "measured with another set-up"
                      : is_repeated ? "the robot or its set-up has changed since"
@@ -87,14 +87,13 @@ std::string describe_verdict(const Calibration& calibration, const Kind& kind, b
 std::string describe(const Calibration& calibration, const Kind& kind,
                      const std::optional<Judgement>& judgement) {
     if (!judgement) return "";
-    const bool is_angle = !calibration.campaign.sensor->has_lengths();
+    const AmountUnits& units = calibration.campaign.sensor->main_units();
     const bool has_moved =
         judgement->moved || (calibration.moved && &judgement == &calibration.validation);
     std::string text;
     for (const JudgedGroup& group : judgement->groups) {
         text += fmt::format("{}, {}: RMS {}{}{}{}\n", kind.name, describe_poses(group),
-                            format_error(group.found.rms(), is_angle),
-                            describe_interval(group, is_angle),
+                            format_error(group.found.rms(), units), describe_interval(group, units),
                             describe_limit(group, calibration.limit),
                             describe_verdict(calibration, kind, has_moved, group));
     }

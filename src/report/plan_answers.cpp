@@ -104,7 +104,7 @@ std::string describe_limit(const ErrorBudget& budget) {
          {budget.model, "parameters that the model error at the poses leaves uncertain"},
          {budget.prior, "parameters that the poses hardly tell, as uncertain as before"},
          {budget.repeatability, "the joints' repeatability"}},
-        budget.total, false);
+        budget.total, length_units);
 }
 
 std::string describe_influence(const Planning& planning) {

@@ -27,13 +27,13 @@ detail::Table index_table(const Rating& rating, bool has_prior, int digits) {
 /// The direction in words: errors in mm and mrad, and how well their sum is known.
 std::string describe_direction(const Campaign& campaign, const WeakDirection& direction) {
     const auto names = parameter_names(campaign);
-    const auto is_angle = parameter_is_angle(campaign);
+    const auto units = parameter_units(campaign);
     const VectorXd scale = parameter_scale(campaign);
     std::string terms;
     for (const ParameterTerm& term : direction.terms) {
         const auto k = static_cast<std::size_t>(term.parameter);
         terms += terms.empty() ? "" : ", ";
-        terms += detail::format_error(term.coefficient * scale[term.parameter], is_angle[k]) + ' ' +
+        terms += detail::format_error(term.coefficient * scale[term.parameter], *units[k]) + ' ' +
                  names[k];
     }
     if (!(direction.singular_value > 0)) return "not seen at all: " + terms;

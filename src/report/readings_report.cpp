@@ -20,9 +20,9 @@ const TriedReading& as_stated(const ReadingSearch& search) {
 
 /// "0.61 mm", of sensors of angles alone "0.02 deg".
 std::string format_misfit(const Campaign& campaign, const ReadingMisfit& misfit) {
-    return campaign.sensor->has_lengths()
-               ? format_mm(misfit.distance_rms) + " mm"
-               : format_short(to_degrees(misfit.orientation_rms), 3) + " deg";
+    return campaign.sensor->has_lengths() ? format_mm(misfit.distance_rms) + " mm"
+                                          : format_short(misfit.orientation_reading(), 3) + ' ' +
+                                                std::string(misfit.orientation_units->reading);
 }
 
 std::string describe_stated(const Campaign& campaign, const ReadingSearch& search) {
@@ -48,12 +48,13 @@ Table list_best(const Campaign& campaign, const ReadingSearch& search) {
     constexpr std::size_t shown = 5;
     const bool has_angles = campaign.sensor->has_angles();
     Table table{{"read with", "RMS/mm"}, {}};
-    if (has_angles) table.header.emplace_back("RMS/deg");
+    if (has_angles)
+        table.header.push_back("RMS/" + std::string(campaign.sensor->units(true).reading));
     for (std::size_t k = 0; k < std::min(shown, search.tried.size()); ++k) {
         const TriedReading& reading = search.tried[k];
         table.rows.push_back({reading.words, format_mm(reading.misfit.distance_rms)});
         if (!has_angles) continue;
-        table.rows.back().push_back(format_short(to_degrees(reading.misfit.orientation_rms), 3));
+        table.rows.back().push_back(format_short(reading.misfit.orientation_reading(), 3));
     }
     return table;
 }

@@ -16,8 +16,7 @@ namespace {
 /// "0.16 instead of 38 mm held out".
 std::string describe(const HeldOutChange& change, const Campaign& campaign) {
     return fmt::format("{} instead of {} {} held out", format_short(1e3 * change.after, 3),
-                       format_short(1e3 * change.before, 3),
-                       units_of(!campaign.sensor->has_lengths()).error);
+                       format_short(1e3 * change.before, 3), campaign.sensor->main_units().error);
 }
 
 /// "[1.2, -1.6, 0.01]", of m or rad as mm or mrad.
@@ -98,8 +97,7 @@ std::string describe(const RoundedJoints& rounded, const Campaign& campaign) {
         "all joint angles are multiples of {} deg, and rounding them so leaves {} {} by itself: "
         "record more digits; with repeatability_mrad: {} of each joint: {}",
         format_short(degrees, 2), format_short(1e3 * rounded.effect, 2),
-        units_of(!campaign.sensor->has_lengths()).error,
-        format_short(1e3 * rounded.step / std::sqrt(12.0), 2),
+        campaign.sensor->main_units().error, format_short(1e3 * rounded.step / std::sqrt(12.0), 2),
         describe(rounded.held_out, campaign));
 }
 
@@ -117,7 +115,7 @@ std::string describe(const ShiftedRows& shifted, const Campaign& campaign) {
         "The nominal robot then misses half of the readings by {} instead of {} {}",
         quote(shifted.first), shifted.shift > 0 ? "before" : "after",
         format_short(1e3 * shifted.after, 3), format_short(1e3 * shifted.before, 3),
-        units_of(!campaign.sensor->has_lengths()).error);
+        campaign.sensor->main_units().error);
 }
 
 }  // namespace

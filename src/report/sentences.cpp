@@ -41,7 +41,8 @@ bool is_told_by_estimate(const Plan& plan, const KnownWithin& known) {
 std::string describe_model_error(const Campaign& campaign) {
     const Sensor& sensor = *campaign.sensor;
     std::string text;
-    if (sensor.has_lengths()) text = format_short(mm_per_m * campaign.model_error, 4) + " mm";
+    if (sensor.has_lengths() || sensor.has_pixels())
+        text = format_short(mm_per_m * campaign.model_error, 4) + " mm";
     if (!sensor.has_angles()) return text;
     return text + (text.empty() ? "" : " and ") +
            format_short(mrad_per_rad * campaign.model_error_orientation, 4) + " mrad";
@@ -98,10 +99,9 @@ std::string describe_looseness(double efficiency, Index starts_at_best, Index st
 }
 
 std::string describe(const Cure& cure, const Campaign& campaign) {
-    const bool is_angle = !campaign.sensor->has_lengths();
     return fmt::format("with {}: {} instead of {} {} held out", spell(cure.remedy),
                        format_short(1e3 * cure.after, 3), format_short(1e3 * cure.before, 3),
-                       units_of(is_angle).error);
+                       campaign.sensor->main_units().error);
 }
 
 bool is_model_error_found(const Calibration& calibration) {
@@ -113,16 +113,17 @@ bool is_model_error_found(const Calibration& calibration) {
            calibration.method != CalibrationMethod::TwoStep;
 }
 
-std::string describe_largest(const std::vector<ErrorPart>& parts, double total, bool is_angle) {
+std::string describe_largest(const std::vector<ErrorPart>& parts, double total,
+                             const AmountUnits& units) {
     if (!(total > 0)) return "";
     const auto& [size, what] = *std::ranges::max_element(parts, {}, &ErrorPart::size);
-    return fmt::format("{}: {}, {:.0f} % of the square", what, format_error(size, is_angle),
+    return fmt::format("{}: {}, {:.0f} % of the square", what, format_error(size, units),
                        100 * size * size / (total * total));
 }
 
-std::string format_error(double value, bool is_angle) {
+std::string format_error(double value, const AmountUnits& units) {
     if (std::isnan(value)) return "-";
-    return format_short(mm_per_m * value, 4) + ' ' + std::string(units_of(is_angle).error);
+    return format_short(mm_per_m * value, 4) + ' ' + std::string(units.error);
 }
 
 }  // namespace posewise::detail

@@ -40,9 +40,13 @@ struct ErrorPart {
     double size = 0;
     const char* what = nullptr;
 };
-std::string describe_largest(const std::vector<ErrorPart>& parts, double total, bool is_angle);
+std::string describe_largest(const std::vector<ErrorPart>& parts, double total,
+                             const AmountUnits& units);
 
 /// "1 mm", "-0.5 mrad": a small error with its unit.
-std::string format_error(double value, bool is_angle);
+std::string format_error(double value, const AmountUnits& units);
+inline std::string format_error(double value, bool is_angle) {
+    return format_error(value, units_of(is_angle));
+}
 
 }  // namespace posewise::detail

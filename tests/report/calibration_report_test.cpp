@@ -83,7 +83,8 @@ TEST(FormatCalibration, SaysWhatToExpectAtPosesToPredict) {
     Calibration calibration = calibrate(example.campaign, example.measurements, {.folds = 0});
     EXPECT_FALSE(holds(format(calibration), "to predict"));
     const PredictedError error{{3e-4, 4e-4, 0}, 9e-4};
-    calibration.predicted = {{false, error, {error, error}}, {true, error, {error, error}}};
+    calibration.predicted = {{false, &length_units, error, {error, error}},
+                             {true, &angle_units, error, {error, error}}};
     for (const std::string unit : {"mm", "mrad"}) {
         EXPECT_TRUE(holds(format(calibration), "\nexpected at the 2 poses to predict: 0.5 " + unit +
                                                    " (parameters 0.3 " + unit + ", left over 0.4 " +

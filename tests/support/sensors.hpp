@@ -1,5 +1,6 @@
 #pragma once
 
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "support/campaigns.hpp"
 
@@ -17,6 +18,48 @@ inline Campaign with_sensor(const Campaign& from, std::shared_ptr<const Sensor> 
     campaign.sensor = std::move(sensor);
     campaign.nominal.sensor = unknowns;
     campaign.base_is_known.fill(is_base_known);
+    return campaign;
+}
+
+/// Corners of a chessboard, as OpenCV has them: rows downwards (y), in each to the right (x).
+inline std::vector<Vector3d> chessboard(Index columns, Index rows, double square) {
+    std::vector<Vector3d> corners;
+    for (Index k = 0; k < rows * columns; ++k) {
+        corners.emplace_back(square * static_cast<double>(k % columns),
+                             square * static_cast<double>(k / columns), 0);
+    }
+    return corners;
+}
+
+/// A camera with a lens of 5 coefficients before the robot, the board on its flange.
+inline CameraSetup fixed_camera() {
+    CameraSetup setup;
+    setup.corners = chessboard(4, 3, 0.1);
+    setup.intrinsics = {
+        1210, 1190, 655, 470, Distortion::BrownConrady, {-0.12, 0.05, 1e-3, -2e-3, 0.01}};
+    setup.sigma = 0.1;
+    setup.view.image = Vector2d(1280, 960);
+    return setup;
+}
+
+/// A camera with a fisheye on the flange, its intrinsic parameters unknown.
+inline CameraSetup camera_on_flange() {
+    CameraSetup setup = fixed_camera();
+    setup.is_on_flange = true;
+    setup.intrinsics = {700, 710, 650, 490, Distortion::Fisheye, {0.02, -0.01, 0.003, -0.001}};
+    setup.is_known.assign(8, false);
+    setup.is_known[3] = true;
+    return setup;
+}
+
+/// The robot 3 m before the camera, or before the front of the board, whose z axis points away.
+inline Campaign before_camera(const Campaign& from, const CameraSetup& setup) {
+    const auto sensor = std::make_shared<CameraSensor>(setup);
+    Isometry3d place(Eigen::AngleAxisd(0.4, Vector3d(1, -2, 0.5).normalized()));
+    place.translation() = Vector3d(0.1, -0.05, 0.2);
+    Campaign campaign = with_sensor(from, sensor, sensor->unknowns(place, setup.intrinsics));
+    campaign.nominal.world_from_base = Eigen::Translation3d(0.2, 0.1, setup.is_on_flange ? -3 : 3) *
+                                       Eigen::AngleAxisd(2, Vector3d(0.3, 1, -0.2).normalized());
     return campaign;
 }
 
@@ -95,6 +138,9 @@ inline std::vector<SensorCampaign> campaigns_of_every_sensor(const Chain& robot)
     Campaign base_partly_known = points;
     base_partly_known.base_is_known = {false, false, true, true, true, false};
     all.push_back({"points, base partly known", base_partly_known});
+    all.push_back({"camera that is fixed", before_camera(points, fixed_camera())});
+    all.push_back(
+        {"camera on the flange, intrinsics unknown", before_camera(points, camera_on_flange())});
     return all;
 }
 

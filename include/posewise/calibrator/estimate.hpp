@@ -44,8 +44,10 @@ struct Metrics {
     double distance_p95 = 0;
     std::array<double, 3> coordinate_rms{};
     std::array<double, 3> coordinate_max{};
-    double orientation_rms = 0;  ///< angle of the remaining rotation
+    double orientation_rms = 0;  ///< angle of the remaining rotation, or distance in an image
     double orientation_max = 0;
+    /// Of `orientation_rms`: rad, or 1000 px of a sensor with has_pixels().
+    const AmountUnits* orientation_units = &angle_units;
 
     /// RMS of the distances; of the angles (rad) where no length is measured.
     double rms() const { return coordinate_count > 0 ? distance_rms : orientation_rms; }
@@ -152,6 +154,7 @@ struct PredictedError : ExpectedError {
 /// Expected error at configurations that nobody has measured, for distances (m) or angles (rad).
 struct ErrorPrediction {
     bool is_angle = false;
+    const AmountUnits* units = &length_units;
     PredictedError overall;            ///< over the points of all configurations
     std::vector<PredictedError> each;  ///< for each configuration
 };
@@ -194,6 +197,8 @@ RowMatrixXd squared_angles(const Campaign& campaign, const Parameters& parameter
 /// Metrics of residuals as residuals() returns them. At most the first `length_count` columns are
 /// lengths (Sensor::lengths_per_target()), the others angles.
 Metrics make_metrics(const RowMatrixXd& residuals, Index length_count = 3);
+/// The same of residuals of such a sensor.
+Metrics make_metrics(const RowMatrixXd& residuals, const Sensor& sensor);
 /// Metrics of residuals(): over all samples, or over means if the measurements are means.
 Metrics make_metrics(const Campaign& campaign, const Parameters& parameters,
                      const Measurements& measurements);

@@ -105,9 +105,9 @@ struct PageConfigurations {
 
 /// Residuals of the measurements that a calibration was made with.
 struct PageResiduals {
-    std::vector<std::string> axes;   ///< residual_axes()
-    std::vector<bool> is_angle;      ///< for each axis
-    std::vector<std::string> names;  ///< reading_names()
+    std::vector<std::string> axes;          ///< residual_axes()
+    std::vector<const AmountUnits*> units;  ///< of each axis
+    std::vector<std::string> names;         ///< reading_names()
     Measurements measurements;
     std::vector<ReadingResidual> readings;
     /// "validation", "verification", "left_out": residuals of poses it was judged at.

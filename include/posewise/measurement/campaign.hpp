@@ -134,6 +134,9 @@ std::vector<std::string> parameter_names(const Campaign& campaign);
 /// Whether each parameter is an angle (rad); else it is a length (m).
 std::vector<bool> parameter_is_angle(const Campaign& campaign);
 
+/// Units of each parameter: those of a length or an angle, but for some unknowns of sensors.
+std::vector<const AmountUnits*> parameter_units(const Campaign& campaign);
+
 /// Expected error of each parameter (m or rad): the column scale. Throws InputError if `spread`
 /// names a parameter the campaign does not have.
 VectorXd parameter_scale(const Campaign& campaign);

@@ -33,8 +33,9 @@ enum class Constraint {
     Incidence,
     LineOfSight,
     VisibleTargets,  ///< all five at once for as many targets as must be visible
+    View,            ///< for sensors with has_view(): as many targets as must be are in sight, rad
 };
-inline constexpr std::size_t constraint_count = 13;
+inline constexpr std::size_t constraint_count = 14;
 
 /// Name for messages, like that in campaign files: "tracker.elevation".
 const char* constraint_name(Constraint constraint);
@@ -81,7 +82,7 @@ class Constraints {
     /// the limits, a number of normals other than that of targets, targets inside a link that hides
     /// them, or a cell that mentions targets or the tracker if the sensor has no targets or the
     /// campaign does not state its base and targets. `needs_contact`: whether a sensor with
-    /// has_contacts() is to measure there.
+    /// has_contacts() or has_view() is to measure there; the latter needs base and sensor stated.
     Constraints(const Campaign& campaign, Cell cell, bool needs_contact = true);
 
     const Cell& cell() const { return cell_; }
@@ -129,9 +130,12 @@ class Constraints {
     double line_clearance(const Posture& posture, const Vector3d& target) const;
     void check_contact(const VectorXd& q, ConstraintReport& report) const;
     void check_sight(const Posture& posture, ConstraintReport& report) const;
+    void check_view(const Posture& posture, ConstraintReport& report) const;
 
     Cell cell_;
-    std::optional<Campaign> contact_;  // if something must be touched
+    std::optional<Campaign> contact_;     // if something must be touched
+    std::shared_ptr<const Sensor> view_;  // if something must be in its view
+    VectorXd view_unknowns_;
     Chain robot_;
     Index target_count_;
     Isometry3d tracker_from_base_;

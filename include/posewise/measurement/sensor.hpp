@@ -17,6 +17,10 @@ using Seen = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>
 /// The targets that one pose shows, a row of Seen.
 using SeenTargets = Eigen::Array<bool, 1, Eigen::Dynamic>;
 
+/// Numbers of a camera, which are thousands of pixels, and what has no unit.
+inline constexpr AmountUnits pixel_units{"kpx", "px", "px", "", 1e3, 1};
+inline constexpr AmountUnits plain_units{"", "", "1e-3", "", 1, 1};
+
 /// Every pose shows every target.
 Seen all_seen(Index pose_count, Index target_count);
 
@@ -115,13 +119,20 @@ struct SensorWords {
 /// Points fixed to the flange whose world positions follow from an observation. Registration then
 /// needs no first guess, because its equations are linear.
 struct ObservedPoints {
-    /// Equally many points for each target, one target after another; coordinates may be unknown.
+    /// Equally many points for each target, one target after another, or those of one body that
+    /// some of many targets determine together; coordinates may be unknown.
     Targets points;
-    /// World positions (m, 3 per point) from an observation.
-    std::function<VectorXd(const VectorXd& observation)> positions;
+    /// World positions (m, 3 per point) from an observation of the targets seen; empty if these do
+    /// not determine them.
+    std::function<VectorXd(const VectorXd& observation, const SeenTargets& is_seen)> positions;
     /// The sensor's unknowns from the points' unknown coordinates.
     std::function<VectorXd(const VectorXd& coordinates)> unknowns;
+    /// The points in the flange frame (m, 3 per point) from the sensor's unknowns. Not stated: they
+    /// are what is observed where the flange is the world.
+    std::function<VectorXd(const VectorXd& unknowns)> in_flange{};
 };
+
+struct Measurements;
 
 /// Numbers of an observation, wherever they are stored.
 using ConstNumbers = Eigen::Ref<const VectorXd>;
@@ -166,9 +177,18 @@ class Sensor {
 
     // ---- Kinds of numbers: lengths by default ----
 
-    /// Whether the number in this row of an observation is an angle (rad); else it is a length (m).
-    /// For each target, lengths come first.
+    /// Whether the number in this row of an observation is an angle (rad, or 1000 px of a sensor
+    /// with has_pixels()); else it is a length (m). For each target, lengths come first.
     virtual bool is_angle(Index) const { return false; }
+    /// Whether the numbers that count as angles are places in an image, thousands of pixels. What
+    /// the model cannot express then reaches them as a motion of the flange alone.
+    virtual bool has_pixels() const { return false; }
+    /// Units of the lengths in an observation, or of its other numbers.
+    const AmountUnits& units(bool of_angles) const {
+        return of_angles && has_pixels() ? pixel_units : units_of(of_angles);
+    }
+    /// Units of the lengths if there are any, else of all numbers.
+    const AmountUnits& main_units() const { return units(!has_lengths()); }
     /// Whether there are angles, or lengths, in an observation.
     bool has_angles() const { return count_angles() > 0; }
     bool has_lengths() const { return count_angles() < row_count(); }
@@ -176,8 +196,10 @@ class Sensor {
     virtual bool is_distance(Index) const { return false; }
     /// Whether the last three numbers of an observation are the rotation vector of one body.
     virtual bool has_orientation() const { return false; }
-    /// Whether each unknown is an angle (rad); else it is a length (m).
+    /// Whether each unknown is an angle (rad) or no amount of space; else it is a length (m).
     virtual std::vector<bool> unknown_is_angle() const;
+    /// Units of each unknown: of a length or an angle by default.
+    virtual std::vector<const AmountUnits*> unknown_units() const;
 
     // ---- What is seen or missed as a whole: the targets by default ----
 
@@ -196,14 +218,24 @@ class Sensor {
     virtual bool touches() const { return has_contacts(); }
     /// How many targets a pose can show at once.
     Index seen_at_once() const { return has_contacts() ? 1 : target_count(); }
+    /// Whether it sees targets only where they face it, so that planning needs clearances.
+    virtual bool has_view() const { return false; }
+    /// For a sensor with a view: how far each target is from being out of sight, rad; negative: it
+    /// is. One value a target.
+    virtual VectorXd view_clearances(const Isometry3d&, const VectorXd&) const { return {}; }
+    /// How many targets a pose must show for a sensor with a view.
+    virtual Index least_in_view() const { return 1; }
     /// Index in targets() of the point that a target belongs to.
     Index point_of(Index target) const { return target * targets().count() / target_count(); }
     /// Position of a target's point in the flange frame, m.
     Vector3d target_position(Index target, const VectorXd& unknowns) const {
         return targets().position(point_of(target), unknowns);
     }
+    /// How many positions count where accuracy is predicted: one a target, but of pixels one for
+    /// each of targets(), since all corners belong to one body.
+    Index position_count() const { return has_pixels() ? targets().count() : target_count(); }
     /// Derivative of the targets' world positions, whatever is measured of them: as
-    /// differentiate(), with 3 * target_count() rows in m.
+    /// differentiate(), with 3 * target_count() rows in m, or 3 * targets().count() for these.
     void differentiate_positions(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                                  const VectorXd& unknowns,
                                  Eigen::Ref<RowMatrixXd> J_positions_parameters) const;
@@ -253,6 +285,11 @@ class Sensor {
     /// Nothing if an observation does not determine positions by itself; registration then starts
     /// at the campaign's nominal values.
     virtual std::optional<ObservedPoints> observed_points() const { return std::nullopt; }
+    /// The same where they also rest on what all configurations show, one sample each (`means`): a
+    /// camera's intrinsic parameters.
+    virtual std::optional<ObservedPoints> observed_points(const Measurements& /*means*/) const {
+        return observed_points();
+    }
     /// Whether the unknowns need good initial values, even if the base is known.
     virtual bool needs_first_guess() const { return true; }
     /// Whether the observed points are the targets and nothing else is unknown: a sensor of points.

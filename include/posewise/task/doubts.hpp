@@ -21,7 +21,11 @@ namespace posewise {
 /// RMS by which the nominal robot misses the means, with base and targets fitted.
 struct ReadingMisfit {
     double distance_rms = 0;     ///< m; 0: no length is measured
-    double orientation_rms = 0;  ///< angles, rad; 0: none is measured
+    double orientation_rms = 0;  ///< angles, rad, or 1000 px; 0: none is measured
+    const AmountUnits* orientation_units = &angle_units;
+
+    /// The latter for people: deg or px.
+    double orientation_reading() const { return orientation_units->to_reading(orientation_rms); }
 };
 
 /// A way to read measurements, and how well they fit then.
@@ -314,6 +318,25 @@ std::optional<DistanceDoubt> find_distance_doubt(const Campaign& campaign,
                                                  const Measurements& measurements,
                                                  const Estimate& estimate);
 
+/// What looks wrong of a camera's board or its intrinsic parameters.
+struct CameraDoubt {
+    /// A calibration says that the board is so many times as large; 1: nothing is wrong.
+    double board_factor = 1;
+    double square = 0;         ///< side of a chessboard's squares as stated, m; 0: it is none
+    double misfit = 0;         ///< RMS of what is left at the corners, 1000 px
+    double scaled_misfit = 0;  ///< with that factor
+    /// Principal point, if it is far from the middle of the image (or of what is seen), px.
+    std::optional<std::array<double, 2>> principal_point{};
+    std::array<double, 2> middle{};
+    bool is_of_image = false;  ///< whose size is stated; else the middle of what is seen
+    /// Most views show a plane board from behind its stated front.
+    bool is_seen_from_back = false;
+};
+/// Of corners in images; `registered` is as for find_misfit().
+std::optional<CameraDoubt> find_camera_doubt(const Campaign& campaign,
+                                             const Measurements& measurements,
+                                             const Parameters& registered);
+
 /// Whether the overall scale depends only on the robot's lengths, which are identified: there are
 /// sockets without a known distance, or planes without a known offset that were touched (readings
 /// within 1 mm of 0).
@@ -343,6 +366,7 @@ struct Doubts {
     std::optional<ScatterDoubt> scatter;
     bool lacks_length = false;  ///< see lacks_length()
     std::optional<DistanceDoubt> distance;
+    std::optional<CameraDoubt> camera;
     /// If the calibrated robot is not shown to predict held-out poses better than the nominal one.
     std::optional<HeldOutComparison> held_out;
     /// Residuals more than 1.2 times larger or smaller than stated, and in the 0.1 % tails of chi

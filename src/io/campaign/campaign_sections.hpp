@@ -39,6 +39,8 @@ struct SensorSection {
     std::vector<Index> reached = {};
 };
 SensorSection read_sensor(const YamlValue& sensor);
+/// Of kind camera.
+SensorSection read_camera(const YamlValue& sensor);
 
 /// `robot` gives the joints' names and limits.
 Cell read_cell(const YamlValue& cell, const Chain& robot, const Sensor& sensor);

@@ -181,9 +181,9 @@ const YamlKeys weight{
 const YamlKeys sensor{
     "sensor",
     {
-        {"kind", "", "`points`, `poses`, `distances`, `planes` or `sockets`", "required",
+        {"kind", "", "`points`, `poses`, `camera`, `distances`, `planes` or `sockets`", "required",
          "`points`"},
-        {"sigma_mm", "",
+        {"sigma_mm", "points, poses, distances, planes and sockets",
          "standard deviation of one coordinate or length; of points and poses also one for each "
          "axis",
          "this or `noise` is required", "`0.05`, `[0.05, 0.05, 0.1]`"},
@@ -199,6 +199,25 @@ const YamlKeys sensor{
          "z "
          "being the depth",
          "another instrument", "`flange`"},
+        {"camera", "camera",
+         "`flange`: the camera is on the flange and the board stands still, base is found in the "
+         "board's frame; `fixed`: the camera stands still and the board is on the flange, base is "
+         "found in the camera's frame (z forwards, x to the right of the image, y down)",
+         "required", "`flange`"},
+        {"sigma_px", "camera", "standard deviation of a corner's u and v", "required", "`0.3`"},
+        {"image_px", "camera",
+         "width and height: corners outside are refused, and poses planned to show the board "
+         "inside",
+         "any place", "`[1280, 960]`"},
+        {"intrinsics", "camera", "focal lengths, principal point and distortion", "required",
+         "`{file: camera.yaml}`"},
+        {"board", "camera", "where its corners are", "required",
+         "`{columns: 9, rows: 6, square_mm: 25}`"},
+        {"place", "camera",
+         "where the camera (on the flange) or the board (of a fixed camera) is in the flange frame",
+         "unknown", "`{position_mm: [0, 40, 80], rpy_deg: [0, 0, 90]}`"},
+        {"view", "camera", "when corners count as seen in poses that are planned", "see below",
+         "`{most_tilt_deg: 50}`"},
         {"measured", "poses",
          "with `camera`: `board_in_camera`, as solvePnP gives it, or its inverse",
          "`board_in_camera`", "`camera_in_board`"},
@@ -216,6 +235,49 @@ const YamlKeys sensor{
          "`true`"},
     }};
 
+const YamlKeys camera{
+    "camera",
+    {
+        {"fx_px", "intrinsics",
+         "focal length along the image's width; 0 or none if unknown: it is "
+         "then found from the views",
+         "0", "`1210.4`"},
+        {"fy_px", "intrinsics", "along its height", "0", "`1211.0`"},
+        {"cx_px", "intrinsics", "principal point", "0", "`640`"},
+        {"cy_px", "intrinsics", "principal point", "0", "`480`"},
+        {"distortion", "intrinsics", "of the lens", "none",
+         "`{model: brown_conrady, coefficients: [-0.1, 0.02, 0, 0, 0]}`"},
+        {"file", "intrinsics",
+         "instead of these: a YAML file of OpenCV (`camera_matrix`, `distortion_coefficients`) or "
+         "the first camera of one of Kalibr (`intrinsics`, `distortion_coeffs`), also the size of "
+         "its image; relative to the campaign file",
+         "none", "`camera.yaml`"},
+        {"known", "intrinsics",
+         "exact as stated: `true`, `false`, or the names of those that are: fx, fy, cx, cy, k1, "
+         "...",
+         "`true`", "`false`"},
+        {"model", "distortion",
+         "`none`, `brown_conrady` (k1 k2 p1 p2, k3, k4 k5 k6) or `fisheye` (k1 k2 k3 k4), with "
+         "OpenCV's formulas",
+         "required", "`fisheye`"},
+        {"coefficients", "distortion", "4, 5 or 8 of brown_conrady, 4 of fisheye",
+         "required but for none", "`[0.01, 0, 0, 0]`"},
+        {"columns", "board",
+         "of a chessboard: inner corners in a row, not squares; they count row "
+         "by row, x along the rows and y downwards, z into the board",
+         "this or `points_mm`", "`9`"},
+        {"rows", "board", "rows of inner corners", "beside `columns`", "`6`"},
+        {"square_mm", "board", "side of a square", "beside `columns`", "`25`"},
+        {"points_mm", "board", "places of its corners or markers, not necessarily in a plane", "",
+         "`[[0, 0, 0], [50, 0, 0], [50, 50, 0], [0, 50, 0]]`"},
+        {"first_point", "board", "the first one's number in the measurements: 0 or 1", "1", "`0`"},
+        {"most_tilt_deg", "view",
+         "between a plane board's normal and the line of sight of a corner", "60", "`50`"},
+        {"least_corners", "view", "a pose must show", "4", "`20`"},
+        {"front", "view", "the side of a plane board that bears the pattern: `-z` or `+z`", "`-z`",
+         "`+z`"},
+    }};
+
 const YamlKeys noise{"noise",
                      {
                          {"range_um", "", "along the beam", "required", "`10`"},
@@ -227,17 +289,18 @@ const YamlKeys places{
     {
         {"count", "targets", "number of targets, all at unknown places", "this or `position_mm`",
          "`3`"},
-        {"position_mm", "targets, tool, anchors, socket and base",
-         "where they are expected (targets and tool in the flange frame, anchors and base in the "
+        {"position_mm", "targets, tool, place, anchors, socket and base",
+         "where they are expected (targets, tool and place in the flange frame, anchors and base "
+         "in the "
          "instrument's)",
          "", "`[[0, 0, 50]]`"},
         {"radius_mm", "targets",
          "of points and distances: the ball's, a body that keeps off the cell's obstacles; 0: a "
          "flat mark",
          "19.05", "`6.35`"},
-        {"rpy_deg", "tool and base", "roll, pitch and yaw about the fixed axes x, y and z",
+        {"rpy_deg", "tool, place and base", "roll, pitch and yaw about the fixed axes x, y and z",
          "required", "`[0, 0, 180]`"},
-        {"known", "targets, tool, anchors and base",
+        {"known", "targets, tool, place, anchors and base",
          "fixed as stated: `true`, or the axes that are (targets: x, y, z; base: x, y, z, rx, ry, "
          "rz)",
          "`false`", "`[z]`"},
@@ -421,9 +484,9 @@ const YamlKeys record{
 
 const std::vector<const YamlKeys*>& all() {
     static const std::vector<const YamlKeys*> tables{
-        &file,     &planning, &robot,  &joint,  &dh,           &row,   &terms, &weight,
-        &sensor,   &noise,    &places, &spread, &measurements, &mat,   &cell,  &joint_sum,
-        &keep_out, &solid,    &link,   &sight,  &controller,   &record};
+        &file,      &planning, &robot, &joint,  &dh,     &row,          &terms, &weight,
+        &sensor,    &camera,   &noise, &places, &spread, &measurements, &mat,   &cell,
+        &joint_sum, &keep_out, &solid, &link,   &sight,  &controller,   &record};
     return tables;
 }
 

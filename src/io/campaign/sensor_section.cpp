@@ -389,8 +389,9 @@ SensorSection read_sockets(const YamlValue& value) {
 
 /// A sensor by its kind; its keys depend on it.
 using ReadKind = SensorSection (*)(const YamlValue&);
-constexpr std::array<std::pair<std::string_view, ReadKind>, 5> kinds{{{"points", read_points},
+constexpr std::array<std::pair<std::string_view, ReadKind>, 6> kinds{{{"points", read_points},
                                                                       {"poses", read_poses},
+                                                                      {"camera", read_camera},
                                                                       {"distances", read_distances},
                                                                       {"planes", read_planes},
                                                                       {"sockets", read_sockets}}};

@@ -177,9 +177,11 @@ Json parse_document(const std::string& content, const std::string& path, const s
     return document;
 }
 
-std::string si_suffix(bool is_angle) { return '_' + std::string(units_of(is_angle).si); }
+std::string si_suffix(const AmountUnits& units) {
+    return units.si.empty() ? "" : '_' + std::string(units.si);
+}
 
-std::string error_suffix(bool is_angle) { return '_' + std::string(units_of(is_angle).error); }
+std::string error_suffix(const AmountUnits& units) { return '_' + std::string(units.error); }
 
 const char* load_key(bool turns) { return turns ? "at_Nm" : "at_N"; }
 

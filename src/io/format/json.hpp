@@ -36,9 +36,11 @@ Json read_document(const std::string& path, const std::string& kind);
 Json parse_document(const std::string& content, const std::string& path, const std::string& kind);
 
 /// `_rad` or `_m`.
-std::string si_suffix(bool is_angle);
+std::string si_suffix(const AmountUnits& units);
+inline std::string si_suffix(bool is_angle) { return si_suffix(units_of(is_angle)); }
 /// `_mrad` or `_mm`: of small errors, a thousand to the SI unit.
-std::string error_suffix(bool is_angle);
+std::string error_suffix(const AmountUnits& units);
+inline std::string error_suffix(bool is_angle) { return error_suffix(units_of(is_angle)); }
 
 /// The key of the torque or force under which a compliance's value is what gives way.
 const char* load_key(bool turns);

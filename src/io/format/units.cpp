@@ -11,7 +11,7 @@
 namespace posewise::detail {
 namespace {
 
-constexpr std::array<Unit, 8> units{{
+constexpr std::array<Unit, 9> units{{
     {"mm", Quantity::Length, 1, 1e3},
     {"m", Quantity::Length, 1, 1},
     {"um", Quantity::Length, 1, 1e6},
@@ -20,6 +20,7 @@ constexpr std::array<Unit, 8> units{{
     {"mrad", Quantity::Angle, 1, 1e3},
     {"urad", Quantity::Angle, 1, 1e6},
     {"Nm", Quantity::Torque, 1, 1},
+    {"px", Quantity::Pixel, 1, 1e3},
 }};
 
 double largest_plausible(Quantity quantity) { return quantity == Quantity::Angle ? 1e4 : 1e6; }

@@ -8,15 +8,15 @@
 
 namespace posewise::detail {
 
-enum class Quantity { Length, Angle, Torque };
+enum class Quantity { Length, Angle, Torque, Pixel };
 
 /// What a translation or a rotation is measured in.
 inline Quantity quantity_of(Motion motion) {
     return motion == Motion::Rotation ? Quantity::Angle : Quantity::Length;
 }
 
-/// A unit of files: value * factor / divisor is in m, rad or N m. (312 mm / 1000 is 0.312 to the
-/// last digit, 312 * 1e-3 is not.)
+/// A unit of files: value * factor / divisor is in m, rad, N m or thousands of pixels. (312 mm /
+/// 1000 is 0.312 to the last digit, 312 * 1e-3 is not.)
 struct Unit {
     std::string_view name;
     Quantity quantity = Quantity::Length;

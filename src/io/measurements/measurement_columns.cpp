@@ -19,6 +19,8 @@ std::string WantedColumn::example() const {
             return stem + "_rad";
         case Quantity::Length:
             return stem + "_mm";
+        case Quantity::Pixel:
+            return stem + "_px";
         case Quantity::Torque:
             break;
     }
@@ -27,7 +29,12 @@ std::string WantedColumn::example() const {
 
 std::string torque_stem(const Joint& joint) { return "tau_" + joint.name; }
 
-std::vector<WantedColumn> wanted_columns(const Campaign& campaign) {
+Quantity quantity_of_row(const Sensor& sensor, Index row) {
+    if (!sensor.is_angle(row)) return Quantity::Length;
+    return sensor.has_pixels() ? Quantity::Pixel : Quantity::Angle;
+}
+
+std::vector<WantedColumn> wanted_columns(const Campaign& campaign, Form form) {
     const Chain& robot = campaign.robot;
     std::vector<WantedColumn> wanted;
     for (Index j = 0; j < robot.joint_count(); ++j) {
@@ -40,10 +47,15 @@ std::vector<WantedColumn> wanted_columns(const Campaign& campaign) {
             {torque_stem(joint_of(robot, torque)), Role::Joint, next++, Quantity::Torque});
     }
     if (campaign.sensor->has_contacts()) return wanted;
+    if (form == Form::RowEachCorner) {
+        wanted.push_back({"u", Role::Observation, 0, Quantity::Pixel});
+        wanted.push_back({"v", Role::Observation, 1, Quantity::Pixel});
+        return wanted;
+    }
     Index k = 0;
     for (const std::string& name : campaign.sensor->observation_names()) {
-        const Quantity quantity = campaign.sensor->is_angle(k) ? Quantity::Angle : Quantity::Length;
-        wanted.push_back({name, Role::Observation, k++, quantity});
+        wanted.push_back({name, Role::Observation, k, quantity_of_row(*campaign.sensor, k)});
+        ++k;
     }
     return wanted;
 }

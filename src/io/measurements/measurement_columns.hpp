@@ -19,6 +19,9 @@ inline constexpr std::string_view visible_targets = "visible_targets";
 /// has_contacts(); it stands for the columns observed, and for visible_targets.
 inline constexpr std::string_view contact = "socket";
 
+/// Of a row that is one corner in an image: the corner's number.
+inline constexpr std::string_view point_column = "point";
+
 /// Of a row of configurations: what the robot is sent there for.
 inline constexpr std::string_view purpose_column = "purpose";
 inline constexpr std::string_view to_calibrate = "calibrate";
@@ -45,6 +48,7 @@ enum class Role {
     VisibleTargets,
     Purpose,
     Contact,
+    Point,
     Joint,  ///< or a measured torque: a number of the configuration
     Observation,
     Orientation,
@@ -78,8 +82,14 @@ struct WantedColumn {
     std::string example() const;
 };
 
+/// What a row of measurements holds: a sample, or one corner of it as its number, u and v.
+enum class Form { RowEachSample, RowEachCorner };
+
 /// Joints, measured torques, then observations, but for contacts.
-std::vector<WantedColumn> wanted_columns(const Campaign& campaign);
+std::vector<WantedColumn> wanted_columns(const Campaign& campaign, Form form = Form::RowEachSample);
+
+/// What the number in a row of an observation is measured in.
+Quantity quantity_of_row(const Sensor& sensor, Index row);
 
 /// The name of the column of a joint's torque without unit, "tau_q2".
 std::string torque_stem(const Joint& joint);

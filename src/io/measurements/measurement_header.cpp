@@ -19,7 +19,8 @@ class HeaderReader {
         : csv_(csv),
           content_(content),
           joints_(campaign.robot.joints()),
-          wanted_(wanted_columns(campaign)),
+          form_(form_of(csv, campaign, content)),
+          wanted_(wanted_columns(campaign, form_)),
           has_orientation_(campaign.sensor->has_orientation()),
           has_contact_(campaign.sensor->has_contacts()),
           target_count_(campaign.sensor->target_count()),
@@ -29,6 +30,7 @@ class HeaderReader {
             if (!is_optional(column.role)) examples_.push_back(column.example());
         }
         if (has_contact_) examples_.emplace_back(contact);
+        if (form_ == Form::RowEachCorner) examples_.emplace_back(point_column);
     }
 
     Header read() const {
@@ -61,6 +63,18 @@ class HeaderReader {
     }
 
   private:
+    /// Of pixels: a row a corner, unless columns of the first corners say otherwise.
+    static Form form_of(const CsvReader& csv, const Campaign& campaign, Content content) {
+        if (!campaign.sensor->has_pixels() || content != Content::JointsAndObservations) {
+            return Form::RowEachSample;
+        }
+        const auto names = campaign.sensor->observation_names();
+        const bool is_wide = std::ranges::any_of(csv.fields(), [&](const auto& field) {
+            return std::ranges::find(names, split_unit(field).stem) != names.end();
+        });
+        return is_wide ? Form::RowEachSample : Form::RowEachCorner;
+    }
+
     InputError error(std::size_t field, const std::string& problem) const {
         return input_error_at(csv_.locate(field),
                               "column " + quote(csv_.fields()[field]) + " " + problem);
@@ -108,6 +122,7 @@ class HeaderReader {
         if (name == visible_targets && !has_contact_) return Column{Role::VisibleTargets};
         if (name == purpose_column) return Column{Role::Purpose};
         if (name == contact && has_contact_) return Column{Role::Contact};
+        if (name == point_column && form_ == Form::RowEachCorner) return Column{Role::Point};
         if (content_ == Content::JointsAndObservations) {
             if (name == time_column || name == time_seconds_column) return Column{Role::Time};
             if (name == temperature_column) return Column{Role::Temperature};
@@ -223,6 +238,9 @@ class HeaderReader {
         if (has_contact_ && content_ != Content::Program && !has(Role::Contact, 0)) {
             missing.emplace_back(contact);
         }
+        if (form_ == Form::RowEachCorner && !has(Role::Point, 0)) {
+            missing.emplace_back(point_column);
+        }
         if (missing.empty()) return;
         for (const std::size_t field : unknown) {
             if (is_near(field, missing)) throw unknown_error(field);
@@ -264,6 +282,7 @@ class HeaderReader {
     const CsvReader& csv_;
     Content content_;
     const std::vector<Joint>& joints_;
+    Form form_;
     std::vector<WantedColumn> wanted_;
     bool has_orientation_;
     bool has_contact_;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <unordered_set>
 
+#include "corner_collector.hpp"
 #include "io/format/csv_reader.hpp"
 #include "io/format/text.hpp"
 #include "io/format/units.hpp"
@@ -14,6 +15,7 @@
 #include "noted_conditions.hpp"
 #include "planned_points.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/model/chain.hpp"
 #include "sample_collector.hpp"
@@ -37,6 +39,8 @@ class RowReader {
           contacts_(campaign.sensor->contact_names()),
           field_of_joint_(static_cast<std::size_t>(campaign.robot.configuration_size())),
           field_of_observation_(static_cast<std::size_t>(campaign.sensor->row_count())),
+          camera_(dynamic_cast<const CameraSensor*>(campaign.sensor.get())),
+          corners_(campaign),
           is_each_row_one_(content == Content::Program &&
                            std::none_of(columns_.begin(), columns_.end(), [](const auto& column) {
                                return column.role == Role::Sample;
@@ -44,6 +48,7 @@ class RowReader {
         for (std::size_t field = 0; field < columns_.size(); ++field) {
             const auto index = static_cast<std::size_t>(columns_[field].index);
             if (columns_[field].role == Role::Purpose) field_of_purpose_ = field;
+            if (columns_[field].role == Role::Point) field_of_point_ = field;
             if (columns_[field].role == Role::Joint) field_of_joint_[index] = field;
             if (columns_[field].role == Role::Observation) field_of_observation_[index] = field;
             if (columns_[field].role == Role::Orientation) {
@@ -67,6 +72,10 @@ class RowReader {
         if (is_via_ && content_ != Content::Program) return;  // nothing is measured there
         row_.name.clear();
         for (std::size_t field = 0; field < columns_.size(); ++field) read_field(field);
+        if (field_of_point_) {
+            corners_.add(read_corner());
+            return;
+        }
         if (content_ == Content::JointsAndObservations && contacts_.empty()) read_targets();
         check_new_sample();
         note_conditions();
@@ -83,6 +92,10 @@ class RowReader {
     OrientationNotation notation() const {
         if (orientation_fields_.empty()) return OrientationNotation::RotationVector;
         return detail::orientation_forms[columns_[orientation_fields_.front()].form].notation;
+    }
+    /// Corners that rows of their own hold, as samples.
+    void add_corners_to(detail::SampleCollector& samples) const {
+        if (field_of_point_) corners_.add_to(samples);
     }
     /// What the columns of times and temperatures hold.
     std::vector<Condition> conditions() const {
@@ -154,6 +167,7 @@ class RowReader {
             case Role::Purpose:      // by read_purpose()
             case Role::Time:         // by note_conditions()
             case Role::Temperature:  // likewise
+            case Role::Point:        // by read_corner()
             case Role::Unused:
                 return;
         }
@@ -273,7 +287,52 @@ class RowReader {
             row_.observation[static_cast<Index>(k)] = read_number(field_of_observation_[k]);
             check_distance(k);
         }
+        if (camera_ != nullptr) check_in_image(row_.observation.segment<2>(2 * target), first);
         if (!orientation_fields_.empty()) row_.observation.segment<3>(3) = read_orientation();
+    }
+
+    detail::Corner read_corner() {
+        const std::size_t field = *field_of_point_;
+        const Index first = first_corner(*campaign_.sensor);
+        const Index last = first + campaign_.sensor->target_count() - 1;
+        const detail::ParsedNumber number = detail::parse_number(csv_.fields()[field]);
+        if (!number.ok() || number.value < static_cast<double>(first) ||
+            number.value > static_cast<double>(last) || number.value != std::floor(number.value)) {
+            throw input_error_at(
+                csv_.locate(field),
+                fmt::format("{} is {}; must be the number of a corner of the board, {} to {}{}",
+                            detail::point_column, detail::quote(csv_.fields()[field]), first, last,
+                            number.ok() && number.value == 0 && first == 1
+                                ? " (board.first_point: 0 in the campaign counts from 0)"
+                                : ""));
+        }
+        detail::Corner corner{
+            row_.id, row_.name, row_.joints, static_cast<Index>(number.value) - first, {}, {}};
+        corner.place << read_number(field_of_observation_[0]),
+            read_number(field_of_observation_[1]);
+        check_in_image(corner.place, 0);
+        for (const std::size_t joint : field_of_joint_)
+            corner.locations.push_back(csv_.locate(joint));
+        return corner;
+    }
+
+    /// To a pixel. `first`: the field's index among the observed numbers.
+    void check_in_image(const Vector2d& place, std::size_t first) const {
+        if (camera_ == nullptr || !camera_->setup().view.image) return;
+        const auto& image = camera_->setup().view.image;
+        const Vector2d px = 1e3 * place;
+        const auto is_inside = [&](double value, double size) {
+            return value >= -1 && value <= size;
+        };
+        for (Index axis = 0; axis < 2; ++axis) {
+            if (is_inside(px[axis], (*image)[axis])) continue;
+            const bool fits_swapped = is_inside(px[0], image->y()) && is_inside(px[1], image->x());
+            throw input_error_at(
+                csv_.locate(field_of_observation_[first + static_cast<std::size_t>(axis)]),
+                fmt::format("{} is {:g} px, outside of the image; must be from 0 to {:g}{}",
+                            axis == 0 ? "u" : "v", px[axis], (*image)[axis],
+                            fits_swapped ? " (are u and v swapped?)" : ""));
+        }
     }
 
     /// No target is at its anchor, or behind it.
@@ -344,6 +403,9 @@ class RowReader {
     std::vector<std::size_t> field_of_joint_;
     std::vector<std::size_t> field_of_observation_;
     std::optional<std::size_t> field_of_purpose_;
+    std::optional<std::size_t> field_of_point_;
+    const CameraSensor* camera_;
+    detail::CornerCollector corners_;
     bool is_via_ = false;  ///< the row at hand
     std::vector<std::string> purposes_;
     bool is_each_row_one_;                         ///< a configuration by itself
@@ -371,6 +433,7 @@ ReadFile read_csv(detail::CsvReader csv, const std::string& path, const Campaign
     RowReader row(csv, campaign, content, std::move(header.columns));
     detail::SampleCollector samples(campaign);
     while (csv.next_row()) row.add_to(samples);
+    row.add_corners_to(samples);
     MeasurementsFile measurements{samples.finish(path), std::move(header.unused)};
     measurements.notation = row.notation();
     measurements.conditions = row.conditions();

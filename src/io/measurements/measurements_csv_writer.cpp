@@ -7,6 +7,7 @@
 #include "io/format/csv_reader.hpp"
 #include "measurement_columns.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/sensors.hpp"
 
 namespace posewise::io {
@@ -33,11 +34,25 @@ std::string observation_cells(const Sensor& sensor, const Measurements& measurem
     for (Index target = 0; target < measurements.is_seen.cols(); ++target) {
         const bool is_seen = measurements.is_seen(sample, target);
         for (const double value : measurements.observation(sample, target)) {
-            const double factor = sensor.is_angle(row++) ? 1 : 1e3;
+            const bool is_in_rad =
+                detail::quantity_of_row(sensor, row++) == detail::Quantity::Angle;
+            const double factor = is_in_rad ? 1 : 1e3;
             cells += is_seen ? fmt::format(",{}", factor * value) : ",";
         }
     }
     return cells;
+}
+
+/// A row for each corner seen: its place in px and its number.
+void write_corners(const Sensor& sensor, const Measurements& measurements, Index sample,
+                   const std::string& before, std::string& text) {
+    const Index first = first_corner(sensor);
+    for (Index corner = 0; corner < measurements.is_seen.cols(); ++corner) {
+        if (!measurements.is_seen(sample, corner)) continue;
+        const VectorXd place = 1e3 * measurements.observation(sample, corner).transpose();
+        fmt::format_to(std::back_inserter(text), "{},{},{},{}\n", before, place[0], place[1],
+                       first + corner);
+    }
 }
 
 bool is_finite(const Measurements& measurements) {
@@ -72,7 +87,9 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
     }
     text += "config,sample";
     std::vector<double> joint_factors;  // to the unit written
-    for (const detail::WantedColumn& column : detail::wanted_columns(campaign)) {
+    const bool has_corners = campaign.sensor->has_pixels();
+    const auto form = has_corners ? detail::Form::RowEachCorner : detail::Form::RowEachSample;
+    for (const detail::WantedColumn& column : detail::wanted_columns(campaign, form)) {
         text += ',' + column.example();
         if (column.role == detail::Role::Joint) {
             joint_factors.push_back(column.quantity == detail::Quantity::Length ? 1e3 : 1);
@@ -80,12 +97,19 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
     }
     const bool has_contact = campaign.sensor->has_contacts();
     if (has_contact) fmt::format_to(out, ",{}", detail::contact);
+    if (has_corners) fmt::format_to(out, ",{}", detail::point_column);
     text += '\n';
     for (Index i = 0; i < measurements.configuration_count(); ++i) {
         const auto k = static_cast<std::size_t>(i);
         const std::string joints = joint_cells(measurements, i, joint_factors);
         for (Index sample = 0; sample < measurements.sample_count(i); ++sample) {
             const Index row = measurements.first_sample[k] + sample;
+            if (has_corners) {
+                const std::string before =
+                    fmt::format("{},{}{}", detail::csv_field(measurements.ids[k]), sample, joints);
+                write_corners(*campaign.sensor, measurements, row, before, text);
+                continue;
+            }
             fmt::format_to(
                 out, "{},{}{}{}\n", detail::csv_field(measurements.ids[k]), sample, joints,
                 has_contact ? ',' + detail::seen_cell(campaign, measurements.is_seen.row(row))

@@ -54,12 +54,27 @@ Json model_errors_to_json(const std::vector<ModelErrorDoubt>& errors) {
     return json;
 }
 
-Json residuals_to_json(const std::vector<ResidualDoubt>& residuals) {
+Json camera_to_json(const CameraDoubt& doubt) {
+    Json json;
+    if (doubt.board_factor != 1) {
+        json["board_factor"] = doubt.board_factor;
+        json["rms_px"] = 1e3 * doubt.misfit;
+        json["scaled_rms_px"] = 1e3 * doubt.scaled_misfit;
+    }
+    if (doubt.principal_point) {
+        json["principal_point_px"] = *doubt.principal_point;
+        json["middle_px"] = doubt.middle;
+    }
+    if (doubt.is_seen_from_back) json["is_seen_from_back"] = true;
+    return json;
+}
+
+Json residuals_to_json(const Sensor& sensor, const std::vector<ResidualDoubt>& residuals) {
     Json json = Json::array();
     for (const ResidualDoubt& doubt : residuals) {
-        json.push_back(
-            {{"ratio", doubt.ratio},
-             {"fitting_model_error" + error_suffix(doubt.is_angle), mm_per_m * doubt.fitting}});
+        json.push_back({{"ratio", doubt.ratio},
+                        {"fitting_model_error" + error_suffix(sensor.units(doubt.is_angle)),
+                         mm_per_m * doubt.fitting}});
     }
     return json;
 }
@@ -73,8 +88,9 @@ Json reading_to_json(const BetterReading& reading) {
               {"rms_mm", mm_per_m * reading.misfit.distance_rms},
               {"as_stated_rms_mm", mm_per_m * reading.as_stated.distance_rms}};
     if (reading.as_stated.orientation_rms > 0) {
-        json["rms_deg"] = to_degrees(reading.misfit.orientation_rms);
-        json["as_stated_rms_deg"] = to_degrees(reading.as_stated.orientation_rms);
+        const std::string unit = '_' + std::string(reading.misfit.orientation_units->reading);
+        json["rms" + unit] = reading.misfit.orientation_reading();
+        json["as_stated_rms" + unit] = reading.as_stated.orientation_reading();
     }
     return json;
 }
@@ -82,8 +98,9 @@ Json reading_to_json(const BetterReading& reading) {
 Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
     Json json = Json::object();
     if (const auto& misfit = doubts.misfit) {
-        json["misfit"] = {{"distance_mm", mm_per_m * misfit->distance},
-                          {"expected_mm", mm_per_m * misfit->expected},
+        const std::string unit = error_suffix(campaign.sensor->main_units());
+        json["misfit"] = {{"distance" + unit, mm_per_m * misfit->distance},
+                          {"expected" + unit, mm_per_m * misfit->expected},
                           {"planes", planes_to_json(misfit->planes)}};
         if (const auto& reading = misfit->reading) {
             json["misfit"]["reversed"] = reading->reversed;
@@ -113,14 +130,15 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
                             {"stated_mm", mm_per_m * distance->stated},
                             {"measured_mm", mm_per_m * distance->found}};
     }
+    if (const auto& camera = doubts.camera) json["camera"] = camera_to_json(*camera);
     if (const auto& held_out = doubts.held_out) {
-        const std::string unit = error_suffix(!campaign.sensor->has_lengths());
+        const std::string unit = error_suffix(campaign.sensor->main_units());
         json["held_out"] = {{"calibrated" + unit, mm_per_m * held_out->calibrated},
                             {"nominal" + unit, mm_per_m * held_out->nominal},
                             {"rank_deviations", held_out->rank_deviations}};
     }
     if (const auto& workspace = doubts.workspace) {
-        const std::string unit = error_suffix(!campaign.sensor->has_lengths());
+        const std::string unit = error_suffix(campaign.sensor->main_units());
         json["workspace"] = {{"expected" + unit, mm_per_m * workspace->expected},
                              {"nominal" + unit, mm_per_m * workspace->nominal}};
     }
@@ -129,7 +147,7 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
             doubts.residuals, {},
             [](const ResidualDoubt& doubt) { return std::abs(std::log(doubt.ratio)); });
         json["residual_ratio"] = farthest.ratio;
-        json["residuals"] = residuals_to_json(doubts.residuals);
+        json["residuals"] = residuals_to_json(*campaign.sensor, doubts.residuals);
     }
     if (doubts.small_residuals) json["small_residuals"] = *doubts.small_residuals;
     if (doubts.missing_errors) json["missing_errors"] = *doubts.missing_errors;
@@ -137,13 +155,13 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
         json["negative_compliances"].push_back(campaign.robot.joint(joint).name);
     }
     if (!doubts.look.is_empty()) {
-        json["look"] = look_to_json(doubts.look, !campaign.sensor->has_lengths());
+        json["look"] = look_to_json(doubts.look, campaign.sensor->main_units());
     }
     return json;
 }
 
 Json cures_to_json(const Campaign& campaign, const Cures& cures) {
-    const std::string unit = error_suffix(!campaign.sensor->has_lengths());
+    const std::string unit = error_suffix(campaign.sensor->main_units());
     Json found = Json::array();
     for (const Cure& cure : cures.found) {
         found.push_back({{"option", spell(cure.remedy)},

@@ -67,12 +67,12 @@ void check_sigmas(const JsonValue& root, const Campaign& campaign, Index begin, 
                   const MatrixXd& covariance) {
     constexpr double rounding = 1e-9;
     const std::vector<std::string> names = parameter_names(campaign);
-    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const auto units = parameter_units(campaign);
     const Index robot_begin = base_parameter_count(campaign);
     const Index robot_end = robot_begin + campaign.robot.parameter_count();
     for (Index k = begin; k < begin + count; ++k) {
         const auto i = static_cast<std::size_t>(k);
-        const std::string unit = si_suffix(is_angle[i]);
+        const std::string unit = si_suffix(*units[i]);
         const JsonValue sigma = k >= robot_begin && k < robot_end
                                     ? root["robot"][names[i]]["sigma" + unit]
                                     : root["sigma"][names[i] + unit];

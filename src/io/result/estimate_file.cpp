@@ -24,13 +24,13 @@ constexpr double mm = 1e3;
 /// Standard deviations of base and targets, by parameter name and unit.
 Json other_sigmas_to_json(const Campaign& campaign, const Estimate& estimate,
                           const VectorXd& sigmas) {
-    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const auto units = parameter_units(campaign);
     const auto robot_begin = static_cast<std::size_t>(base_parameter_count(campaign));
     const auto robot_end = robot_begin + static_cast<std::size_t>(estimate.parameters.robot.size());
     Json others = Json::object();
     for (std::size_t i = 0; i < estimate.names.size(); ++i) {
         if (i >= robot_begin && i < robot_end) continue;
-        others[estimate.names[i] + detail::si_suffix(is_angle[i])] = sigmas[static_cast<Index>(i)];
+        others[estimate.names[i] + detail::si_suffix(*units[i])] = sigmas[static_cast<Index>(i)];
     }
     return others;
 }
@@ -65,7 +65,7 @@ Json held_out_to_json(const CrossValidation& held_out) {
 
 /// By the residuals: the interval of the held-out RMS, the pose that matters most, drift.
 void add_residual_answers(Json& accuracy, const Calibration& calibration) {
-    const std::string unit = detail::error_suffix(!calibration.campaign.sensor->has_lengths());
+    const std::string unit = detail::error_suffix(calibration.campaign.sensor->main_units());
     if (const auto& interval = calibration.held_out_interval) {
         accuracy["held_out"]["interval"] = {{"lower" + unit, mm * interval->lower},
                                             {"upper" + unit, mm * interval->upper},
@@ -80,7 +80,8 @@ void add_residual_answers(Json& accuracy, const Calibration& calibration) {
     if (const auto& trend = calibration.order_trend) {
         Json slopes = Json::array();
         for (const OrderSlope& slope : trend->slopes) {
-            const std::string own = detail::error_suffix(slope.is_angle);
+            const std::string own =
+                detail::error_suffix(calibration.campaign.sensor->units(slope.is_angle));
             slopes.push_back({{"axis", slope.axis},
                               {"change" + own, mm * slope.change},
                               {"detectable" + own, mm * slope.detectable},
@@ -94,7 +95,8 @@ void add_residual_answers(Json& accuracy, const Calibration& calibration) {
     for (const ConditionTrend& condition : calibration.condition_trends) {
         Json slopes = Json::array();
         for (const OrderSlope& slope : condition.trend.slopes) {
-            const std::string own = detail::error_suffix(slope.is_angle);
+            const std::string own =
+                detail::error_suffix(calibration.campaign.sensor->units(slope.is_angle));
             slopes.push_back({{"axis", slope.axis},
                               {"change" + own, mm * slope.change},
                               {"detectable" + own, mm * slope.detectable},
@@ -123,7 +125,7 @@ Json predictions_to_json(const std::vector<ErrorPrediction>& predictions) {
     Json json = {{"configuration_count", predictions.front().each.size()}};
     for (const ErrorPrediction& prediction : predictions) {
         for (const auto& [name, value] : list_numbers(prediction.overall)) {
-            json[name + detail::error_suffix(prediction.is_angle)] = 1e3 * value;
+            json[name + detail::error_suffix(*prediction.units)] = 1e3 * value;
         }
     }
     return json;
@@ -131,7 +133,7 @@ Json predictions_to_json(const std::vector<ErrorPrediction>& predictions) {
 
 /// What points not used are expected to be off by, mm (mrad where no length is measured).
 Json expected_to_json(const Calibration& calibration) {
-    const std::string unit = detail::error_suffix(!calibration.campaign.sensor->has_lengths());
+    const std::string unit = detail::error_suffix(calibration.campaign.sensor->main_units());
     const auto one = [&](const ExpectedError& error) {
         return Json{{"parameters" + unit, mm * error.parameters},
                     {"left_over" + unit, mm * error.model},
@@ -197,7 +199,7 @@ Json accuracy_to_json(const Calibration& calibration) {
     }
     if (const auto& others = calibration.without_outliers) {
         accuracy["without_outliers"] = without_outliers_to_json(
-            *others, detail::error_suffix(!calibration.campaign.sensor->has_lengths()));
+            *others, detail::error_suffix(calibration.campaign.sensor->main_units()));
     }
     return accuracy;
 }
@@ -207,11 +209,11 @@ Json refitted_to_json(const Calibration& calibration) {
     const Campaign& campaign = *calibration.refitted;
     Json json = detail::parameters_to_json(campaign, campaign.nominal);
     json.erase("robot");
-    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const auto units = parameter_units(campaign);
     const std::vector<std::string> errors = campaign.robot.parameter_names();
     std::size_t k = 0;
     for (const std::string& name : parameter_names(campaign)) {
-        const std::string suffix = detail::si_suffix(is_angle[k++]);
+        const std::string suffix = detail::si_suffix(*units[k++]);
         const auto sigma = calibration.refitted_sigmas.find(name);
         if (sigma == calibration.refitted_sigmas.end() || std::ranges::count(errors, name) > 0) {
             continue;
@@ -414,7 +416,7 @@ void write_predictions_csv(const std::string& path, const std::vector<std::strin
     std::string text = "config";
     for (const ErrorPrediction& prediction : predictions) {
         for (const auto& [name, value] : list_numbers(prediction.overall)) {
-            text += ',' + name + detail::error_suffix(prediction.is_angle);
+            text += ',' + name + detail::error_suffix(*prediction.units);
         }
     }
     for (std::size_t i = 0; i < ids.size(); ++i) {

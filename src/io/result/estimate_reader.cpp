@@ -96,12 +96,12 @@ VectorXd read_targets(const JsonValue& targets, const Sensor& sensor) {
 
 VectorXd read_unknowns(const JsonValue& values, const Sensor& sensor) {
     const std::vector<std::string> names = sensor.unknown_names();
-    const std::vector<bool> is_angle = sensor.unknown_is_angle();
+    const auto units = sensor.unknown_units();
     VectorXd unknowns(static_cast<Index>(names.size()));
     for (std::size_t k = 0; k < names.size(); ++k) {
-        const std::string key = names[k] + detail::si_suffix(is_angle[k]);
+        const std::string key = names[k] + detail::si_suffix(*units[k]);
         if (!values.has(key)) throw values.error("has no " + key + detail::as_then);
-        Size{is_angle[k]}.read(values[key], unknowns[static_cast<Index>(k)]);
+        Size{units[k] != &length_units}.read(values[key], unknowns[static_cast<Index>(k)]);
     }
     return unknowns;
 }

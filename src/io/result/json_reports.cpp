@@ -54,12 +54,12 @@ Json element_to_json(const Element& element, const Chain& robot) {
 /// that do the same: so many m or rad of each for 1 m or rad of it.
 Json identifiability_to_json(const Campaign& campaign, const Identifiability& found) {
     const std::vector<std::string> names = parameter_names(campaign);
-    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const auto units = parameter_units(campaign);
     const VectorXd scale = parameter_scale(campaign);
     Json list = Json::array();
     for (std::size_t k = 0; k < names.size(); ++k) {
         list.push_back({{"name", names[k]},
-                        {"expected_error" + detail::error_suffix(is_angle[k]),
+                        {"expected_error" + detail::error_suffix(*units[k]),
                          mm_per_m * scale[static_cast<Index>(k)]},
                         {"identifiable", true},
                         {"absorbed_by", Json::array()}});
@@ -124,13 +124,13 @@ Json indices_to_json(const Indices& indices) {
 
 Json direction_to_json(const WeakDirection& direction, const Campaign& campaign) {
     const std::vector<std::string> names = parameter_names(campaign);
-    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const auto units = parameter_units(campaign);
     const VectorXd scale = parameter_scale(campaign);
     return {{"singular_value", direction.singular_value},
             {"terms", make_list(direction.terms, [&](const ParameterTerm& term) {
                  const auto k = static_cast<std::size_t>(term.parameter);
                  return Json{{"parameter", names[k]},
-                             {"error" + detail::error_suffix(is_angle[k]),
+                             {"error" + detail::error_suffix(*units[k]),
                               mm_per_m * term.coefficient * scale[term.parameter]}};
              })}};
 }
@@ -285,8 +285,12 @@ std::string to_json(const Inspection& inspection, const ReadingSearch& readings)
         Json one{{"read_with", tried.words},
                  {"reversed", tried.reversed},
                  {"distance_rms_mm", mm_per_m * tried.misfit.distance_rms}};
-        const double angle = tried.misfit.orientation_rms;
-        if (angle > 0) one["orientation_rms_deg"] = to_degrees(angle);
+        const ReadingMisfit& misfit = tried.misfit;
+        const bool are_pixels = misfit.orientation_units == &pixel_units;
+        if (misfit.orientation_rms > 0) {
+            one[are_pixels ? "reprojection_rms_px" : "orientation_rms_deg"] =
+                misfit.orientation_reading();
+        }
         return one;
     });
     if (readings.better) document["better_reading"] = detail::reading_to_json(*readings.better);

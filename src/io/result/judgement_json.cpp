@@ -16,7 +16,7 @@ const std::map<ChanceVerdict, const char*> chances{{ChanceVerdict::Within, "with
                                                    {ChanceVerdict::Beyond, "beyond chance"}};
 
 Json group_to_json(const Calibration& calibration, const char* poses, const JudgedGroup& group) {
-    const std::string unit = error_suffix(!calibration.campaign.sensor->has_lengths());
+    const std::string unit = error_suffix(calibration.campaign.sensor->main_units());
     const auto& interval = group.interval;
     Json json = {
         {"poses", poses},
@@ -65,8 +65,11 @@ Json metrics_to_json(const Metrics& metrics) {
         json["coordinate_max_mm"] = millimetres(metrics.coordinate_max);
     }
     if (metrics.has_orientation) {
-        json["orientation_rms_mrad"] = 1e3 * metrics.orientation_rms;
-        json["orientation_max_mrad"] = 1e3 * metrics.orientation_max;
+        const std::string what =
+            metrics.orientation_units == &pixel_units ? "reprojection" : "orientation";
+        const std::string unit = error_suffix(*metrics.orientation_units);
+        json[what + "_rms" + unit] = 1e3 * metrics.orientation_rms;
+        json[what + "_max" + unit] = 1e3 * metrics.orientation_max;
     }
     return json;
 }

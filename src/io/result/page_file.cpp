@@ -200,9 +200,7 @@ Json readings_to_json(const PageResiduals& residuals) {
 
 Json axes_to_json(const PageResiduals& residuals) {
     Json json = {{"axes", residuals.axes}, {"unit", Json::array()}, {"targets", residuals.names}};
-    for (const bool is_angle : residuals.is_angle) {
-        json["unit"].push_back(units_of(is_angle).error);
-    }
+    for (const AmountUnits* const units : residuals.units) json["unit"].push_back(units->error);
     return json;
 }
 
@@ -312,7 +310,7 @@ PageResiduals page_residuals(const Campaign& campaign, const Measurements& measu
     PageResiduals residuals{residual_axes(campaign), {}, reading_names(campaign), measurements,
                             std::move(readings),     {}};
     for (Index row = 0; row < campaign.sensor->rows_per_target(); ++row) {
-        residuals.is_angle.push_back(campaign.sensor->is_angle(row));
+        residuals.units.push_back(&campaign.sensor->units(campaign.sensor->is_angle(row)));
     }
     return residuals;
 }

@@ -21,23 +21,23 @@ Json targets_to_json(const Sensor& sensor, const VectorXd& unknowns) {
 /// Values of the unknowns, by name and unit.
 Json unknowns_to_json(const Sensor& sensor, const VectorXd& unknowns) {
     const std::vector<std::string> names = sensor.unknown_names();
-    const std::vector<bool> is_angle = sensor.unknown_is_angle();
+    const auto units = sensor.unknown_units();
     Json json = Json::object();
     for (std::size_t k = 0; k < names.size(); ++k) {
-        json[names[k] + si_suffix(is_angle[k])] = unknowns[static_cast<Index>(k)];
+        json[names[k] + si_suffix(*units[k])] = unknowns[static_cast<Index>(k)];
     }
     return json;
 }
 
 Json robot_to_json(const Campaign& campaign, const VectorXd& values, const VectorXd* sigmas) {
     const std::vector<std::string> names = parameter_names(campaign);
-    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const auto units = parameter_units(campaign);
     const VectorXd scale = parameter_scale(campaign);
     const Index robot_begin = base_parameter_count(campaign);
     Json robot = Json::object();
     for (Index k = 0; k < values.size(); ++k) {
         const auto i = static_cast<std::size_t>(robot_begin + k);
-        const std::string unit = si_suffix(is_angle[i]);
+        const std::string unit = si_suffix(*units[i]);
         robot[names[i]] = {{"value" + unit, values[k]}};
         if (sigmas == nullptr) continue;
         robot[names[i]]["sigma" + unit] = (*sigmas)[robot_begin + k];
@@ -45,7 +45,7 @@ Json robot_to_json(const Campaign& campaign, const VectorXd& values, const Vecto
     }
     for (const Compliance& compliance : compliances(campaign.robot)) {
         const auto i = static_cast<std::size_t>(robot_begin + compliance.parameter);
-        robot[names[i]][load_key(is_angle[i])] = compliance.largest;
+        robot[names[i]][load_key(units[i] == &angle_units)] = compliance.largest;
     }
     return robot;
 }

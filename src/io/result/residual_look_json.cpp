@@ -6,20 +6,20 @@ namespace posewise::detail {
 namespace {
 
 /// Numbers before and after, in mm or mrad.
-Json change_to_json(const HeldOutChange& change, bool is_angle) {
-    return {{"before" + error_suffix(is_angle), mm_per_m * change.before},
-            {"after" + error_suffix(is_angle), mm_per_m * change.after}};
+Json change_to_json(const HeldOutChange& change, const AmountUnits& units) {
+    return {{"before" + error_suffix(units), mm_per_m * change.before},
+            {"after" + error_suffix(units), mm_per_m * change.after}};
 }
 
-Json outlying_to_json(const OutlyingConfigurations& outlying, bool is_angle) {
+Json outlying_to_json(const OutlyingConfigurations& outlying, const AmountUnits& units) {
     Json json = {{"configurations", outlying.ids},
                  {"squares_left", outlying.squares_left},
-                 {"held_out", change_to_json(outlying.held_out, is_angle)}};
+                 {"held_out", change_to_json(outlying.held_out, units)}};
     if (const auto& pair = outlying.exchanged) json["exchanged"] = {pair->first, pair->second};
     return json;
 }
 
-Json set_up_change_to_json(const SetUpChange& change, bool is_angle) {
+Json set_up_change_to_json(const SetUpChange& change, const AmountUnits& units) {
     return {{"part", change.part},
             {"is_gradual", change.is_gradual},
             {"last_before", change.last_before},
@@ -27,12 +27,11 @@ Json set_up_change_to_json(const SetUpChange& change, bool is_angle) {
             {"translation_mm", vector_to_json(mm_per_m * change.translation)},
             {"rotation_mrad", vector_to_json(1e3 * change.rotation)},
             {"excluded", change.excluded},
-            {"held_out", change_to_json(change.held_out, is_angle)}};
+            {"held_out", change_to_json(change.held_out, units)}};
 }
 
-Json joint_to_json(const JointPattern& pattern, bool is_angle) {
-    Json json = {{"joint", pattern.joint},
-                 {"held_out", change_to_json(pattern.held_out, is_angle)}};
+Json joint_to_json(const JointPattern& pattern, const AmountUnits& units) {
+    Json json = {{"joint", pattern.joint}, {"held_out", change_to_json(pattern.held_out, units)}};
     if (pattern.kind == JointPattern::Kind::Scale) {
         json["scale"] = pattern.size;
     } else {
@@ -43,11 +42,11 @@ Json joint_to_json(const JointPattern& pattern, bool is_angle) {
 
 }  // namespace
 
-Json look_to_json(const ResidualLook& look, bool is_angle) {
+Json look_to_json(const ResidualLook& look, const AmountUnits& units) {
     Json json = Json::object();
-    if (look.outlying) json["outlying"] = outlying_to_json(*look.outlying, is_angle);
+    if (look.outlying) json["outlying"] = outlying_to_json(*look.outlying, units);
     for (const SetUpChange& change : look.changes) {
-        json["changes"].push_back(set_up_change_to_json(change, is_angle));
+        json["changes"].push_back(set_up_change_to_json(change, units));
     }
     if (const auto& lengths = look.lengths; lengths && lengths->errors) {
         json["lengths"] = {{"excess", lengths->excess},
@@ -56,12 +55,12 @@ Json look_to_json(const ResidualLook& look, bool is_angle) {
                            {"errors_after", lengths->errors->after}};
     }
     for (const JointPattern& joint : look.joints) {
-        json["joints"].push_back(joint_to_json(joint, is_angle));
+        json["joints"].push_back(joint_to_json(joint, units));
     }
     if (const auto& rounded = look.rounded) {
         json["rounded"] = {{"step_deg", to_degrees(rounded->step)},
-                           {"effect" + error_suffix(is_angle), mm_per_m * rounded->effect},
-                           {"held_out", change_to_json(rounded->held_out, is_angle)}};
+                           {"effect" + error_suffix(units), mm_per_m * rounded->effect},
+                           {"held_out", change_to_json(rounded->held_out, units)}};
     }
     if (const auto& rounded = look.rounded_readings) {
         json["rounded_readings"] = {{"step_mm", mm_per_m * rounded->step},
@@ -71,7 +70,7 @@ Json look_to_json(const ResidualLook& look, bool is_angle) {
     if (const auto& shifted = look.shifted) {
         json["shifted"] = {{"first", shifted->first},
                            {"shift", shifted->shift},
-                           {"median", change_to_json({shifted->before, shifted->after}, is_angle)}};
+                           {"median", change_to_json({shifted->before, shifted->after}, units)}};
     }
     return json;
 }

@@ -6,6 +6,6 @@
 namespace posewise::detail {
 
 /// What the look at the residuals has found; an empty object: nothing.
-Json look_to_json(const ResidualLook& look, bool is_angle);
+Json look_to_json(const ResidualLook& look, const AmountUnits& units);
 
 }  // namespace posewise::detail

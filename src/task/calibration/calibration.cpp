@@ -191,8 +191,7 @@ void calibrate_with(Work& work, Calibration& result) {
     if (!result.is_identified()) return;
     result.nominal_residuals = detail::nominal_residuals(work.campaign, work.whole.robot, work.used,
                                                          registered, work.beside());
-    result.nominal =
-        make_metrics(result.nominal_residuals, work.campaign.sensor->lengths_per_target());
+    result.nominal = make_metrics(result.nominal_residuals, *work.campaign.sensor);
     result.repeatability = repeatability(*work.campaign.sensor, work.used);
     result.campaign = with_model_error(work.campaign, result.estimate);
     if (result.estimate.spread) result.stated_spread = work.campaign.spread;

@@ -59,15 +59,15 @@ void add_variances(const Campaign& campaign, const Estimate& estimate,
     const Index of_base = base_parameter_count(campaign);
     const bool has_moved = variances.tail(of_sensor).isZero(0);
     const bool has_moved_base = variances.head(of_base).isZero(0);
-    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const auto units = parameter_units(campaign);
     const Index end = variances.size() - (has_moved ? of_sensor : 0);
     for (Index k = has_moved_base ? of_base : 0; k < end; ++k) {
         if (variances[k] >= least_variance) continue;
         const auto i = static_cast<std::size_t>(k);
-        faults.push_back(fmt::format(
-            "the standard deviation of {} is {:.2g} {}, which no "
-            "measurement gives",
-            estimate.names[i], 1e3 * std::sqrt(variances[k]), units_of(is_angle[i]).error));
+        faults.push_back(
+            fmt::format("the standard deviation of {} is {:.2g} {}, which no "
+                        "measurement gives",
+                        estimate.names[i], 1e3 * std::sqrt(variances[k]), units[i]->error));
     }
 }
 

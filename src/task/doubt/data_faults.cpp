@@ -21,15 +21,15 @@ constexpr double beyond_stated = 3;
 /// No instrument's scale is off by more, nor does any temperature make a robot so much longer.
 constexpr double largest_factor = 0.005;
 
-std::string describe(double value, bool is_angle) {
-    return format_short(1e3 * value, 3) + ' ' + std::string(units_of(is_angle).error);
+std::string describe(double value, const AmountUnits& units) {
+    return format_short(1e3 * value, 3) + ' ' + std::string(units.error);
 }
 
-void add_comparison(const HeldOutComparison& held_out, double times_stated, bool is_angle,
-                    std::vector<std::string>& faults) {
+void add_comparison(const HeldOutComparison& held_out, double times_stated,
+                    const AmountUnits& units, std::vector<std::string>& faults) {
     const std::string both =
-        fmt::format("{}, by the nominal robot by {}", describe(held_out.calibrated, is_angle),
-                    describe(held_out.nominal, is_angle));
+        fmt::format("{}, by the nominal robot by {}", describe(held_out.calibrated, units),
+                    describe(held_out.nominal, units));
     if (held_out.is_worse()) {
         faults.push_back("poses that were held out are missed by " + both +
                          ": most are missed by more than without a calibration");
@@ -49,7 +49,7 @@ void add_left_over(const Doubted& doubted, const Metrics& fit, std::vector<std::
         if (!(left > most)) continue;
         faults.push_back(fmt::format(
             "it leaves {} over, a robot of this kind misses only {} before it is calibrated",
-            describe(left, is_angle), describe(most, is_angle)));
+            describe(left, sensor.units(is_angle)), describe(most, sensor.units(is_angle))));
     }
 }
 
@@ -81,18 +81,17 @@ bool asks_for_cures(const Doubts& doubts) {
 
 std::vector<std::string> find_data_faults(const Doubted& doubted, const Calibration& calibration,
                                           const std::optional<HeldOutComparison>& held_out) {
-    const bool is_angle = !doubted.campaign.sensor->has_lengths();
+    const AmountUnits& units = doubted.campaign.sensor->main_units();
     std::vector<std::string> faults;
     if (asks_for_cures(calibration.doubts)) {
         if (const auto lone = find_lone_configuration(doubted)) {
             faults.push_back(fmt::format("without configuration {} it leaves {} instead of {}",
-                                         quote(lone->id), describe(lone->after, is_angle),
-                                         describe(lone->before, is_angle)));
+                                         quote(lone->id), describe(lone->after, units),
+                                         describe(lone->before, units)));
         }
     }
     if (held_out) {
-        add_comparison(*held_out, times_stated(doubted.campaign, doubted.estimate), is_angle,
-                       faults);
+        add_comparison(*held_out, times_stated(doubted.campaign, doubted.estimate), units, faults);
     }
     add_left_over(doubted, left_over(calibration), faults);
     if (const auto& lengths = calibration.doubts.look.lengths) {

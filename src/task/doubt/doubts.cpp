@@ -47,8 +47,11 @@ std::vector<ResidualDoubt> find_residual_doubts(const Campaign& campaign,
         if (const auto ratio =
                 detail::clear_ratio(estimate.variance_of(is_angle), estimate.loss.kind)) {
             const ExpectedError expected = expected_error(found, estimate, measured, is_angle);
-            doubts.push_back({*ratio, is_angle,
-                              detail::fitting_model_error(found, estimate, expected, is_angle)});
+            doubts.push_back(
+                {*ratio, is_angle,
+                 found.sensor->has_pixels()
+                     ? 0
+                     : detail::fitting_model_error(found, estimate, expected, is_angle)});
         }
     }
     return doubts;
@@ -208,7 +211,9 @@ std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& e
 Doubts find_doubts(const Campaign& campaign, const Measurements& measured,
                    const Parameters& registered, const Metrics& nominal) {
     Doubts doubts;
-    doubts.misfit = find_misfit(campaign, measured, registered);
+    doubts.camera = find_camera_doubt(campaign, measured, registered);
+    const bool is_board_wrong = doubts.camera && doubts.camera->board_factor != 1;
+    if (!is_board_wrong) doubts.misfit = find_misfit(campaign, measured, registered);
     if (!doubts.misfit) {
         doubts.planes = find_plane_doubts(campaign, measured);
         doubts.places = find_place_doubts(campaign, registered);

@@ -50,11 +50,16 @@ bool are_orientations_off(const Campaign& campaign, const RowMatrixXd& residuals
 
 std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& measured,
                                   const Parameters& registered) {
-    if (!campaign.sensor->has_lengths()) return std::nullopt;  // of angles it is not known
+    const bool has_pixels = campaign.sensor->has_pixels();
+    if (!campaign.sensor->has_lengths() && !has_pixels) return std::nullopt;  // it is not known
     Misfit misfit;
     const RowMatrixXd residuals = mean_residuals(campaign, registered, measured);
     misfit.distance = median_distance(residuals);
-    misfit.expected = detail::expected_distance(campaign, measured);
+    // Beside a wrong place of the camera it would be any number of pixels.
+    const bool is_stated = campaign.has_nominal_base && campaign.has_nominal_targets;
+    const Parameters& at = is_stated ? campaign.nominal : registered;
+    misfit.expected = has_pixels ? detail::largest_left_over(campaign, at, measured, true)
+                                 : detail::expected_distance(campaign, measured);
     if (misfit.distance <= doubtful_errors * misfit.expected &&
         !are_orientations_off(campaign, residuals)) {
         return std::nullopt;
@@ -96,11 +101,12 @@ std::string describe_planes(const std::vector<PlaneDoubt>& planes) {
 }
 
 std::string describe_misfit(const Campaign& campaign, const Misfit& misfit) {
+    const std::string_view unit = campaign.sensor->main_units().error;
     return fmt::format(
-        "are these of another robot? The nominal robot misses half of them by over {} mm; must be "
-        "about {} mm, as the spread of {} says{}{}{}",
-        detail::format_short(mm_per_m * misfit.distance, 3),
-        detail::format_short(mm_per_m * misfit.expected, 3), campaign.name,
+        "are these of another robot? The nominal robot misses half of them by over {} {}; must be "
+        "about {} {}, as the spread of {} says{}{}{}",
+        detail::format_short(1e3 * misfit.distance, 3), unit,
+        detail::format_short(1e3 * misfit.expected, 3), unit, campaign.name,
         misfit.planes.empty() ? "" : "; ", describe_planes(misfit.planes),
         misfit.reading ? "; " + describe(*misfit.reading) : "");
 }

@@ -17,8 +17,8 @@ namespace {
 
 using detail::FittedReading;
 
-ReadingMisfit misfit_of(const FittedReading& reading) {
-    return {reading.distance_rms, reading.orientation_rms};
+ReadingMisfit misfit_of(const Campaign& campaign, const FittedReading& reading) {
+    return {reading.distance_rms, reading.orientation_rms, &campaign.sensor->units(true)};
 }
 
 /// Less those that change the same and more.
@@ -53,7 +53,8 @@ ReadingSearch search_readings(const Campaign& campaign, const Measurements& meas
         const auto reversed = reversed_joints(reading.changes, campaign);
         search.tried.push_back({describe(reading.changes, campaign, measurements.notation),
                                 reversed, std::ssize(reversed) == std::ssize(reading.changes),
-                                misfit_of(reading), fit_alike(reading, readings.front())});
+                                misfit_of(campaign, reading),
+                                fit_alike(reading, readings.front())});
     }
     const FittedReading* const better =
         find_clearly_better(readings, credible_distance(campaign, measurements));
@@ -63,8 +64,8 @@ ReadingSearch search_readings(const Campaign& campaign, const Measurements& meas
                      reversed_joints(better->changes, campaign),
                      count_changes(better->changes),
                      describe_as_well(campaign, readings, *better, measurements.notation),
-                     misfit_of(*better),
-                     misfit_of(as_stated(readings))};
+                     misfit_of(campaign, *better),
+                     misfit_of(campaign, as_stated(readings))};
     return search;
 }
 
@@ -86,7 +87,8 @@ std::string describe(const BetterReading& reading) {
     const ReadingMisfit& found = reading.misfit;
     const ReadingMisfit& stated = reading.as_stated;
     compare(mm_per_m * found.distance_rms, mm_per_m * stated.distance_rms, "mm");
-    compare(to_degrees(found.orientation_rms), to_degrees(stated.orientation_rms), "deg");
+    compare(found.orientation_reading(), stated.orientation_reading(),
+            stated.orientation_units->reading.data());
     return fmt::format("they fit clearly better with {}{} ({} RMS): {}", reading.words, others,
                        fmt::join(figures, " and "), reading.cure);
 }

@@ -15,8 +15,8 @@
 namespace posewise {
 namespace {
 
-std::string with_unit(const std::string& name, bool is_angle) {
-    return fmt::format("{}_{}", name, units_of(is_angle).si);
+std::string with_unit(const std::string& name, const AmountUnits& units) {
+    return units.si.empty() ? name : fmt::format("{}_{}", name, units.si);
 }
 
 bool turns(const Chain& robot, Index joint) {
@@ -111,7 +111,7 @@ std::vector<std::string> configuration_columns(const Campaign& campaign) {
     const Chain& robot = campaign.robot;
     std::vector<std::string> columns;
     for (Index j = 0; j < robot.joint_count(); ++j) {
-        columns.push_back(with_unit(joint_name(robot, j), turns(robot, j)));
+        columns.push_back(with_unit(joint_name(robot, j), units_of(turns(robot, j))));
     }
     for (const MeasuredTorque& torque : robot.torques()) {
         columns.push_back("tau_" + joint_name(robot, torque.joint) + "_Nm");
@@ -140,16 +140,16 @@ std::vector<NamedNumber> assumptions_of(const Campaign& campaign) {
         add("model_error_common", common);
     }
     for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {
-        add("joint_repeatability/" +
-                escape_slashes(with_unit(joint_name(campaign.robot, j), turns(campaign.robot, j))),
+        add("joint_repeatability/" + escape_slashes(with_unit(joint_name(campaign.robot, j),
+                                                              units_of(turns(campaign.robot, j)))),
             campaign.joint_repeatability[j]);
     }
-    const std::vector<bool> is_angle = parameter_is_angle(campaign);
+    const auto units = parameter_units(campaign);
     const VectorXd scale = parameter_scale(campaign);
     Index k = 0;
     for (const std::string& name : parameter_names(campaign)) {
-        const bool angle = is_angle[static_cast<std::size_t>(k)];
-        add("expected_error/" + escape_slashes(with_unit(name, angle)), scale[k++]);
+        const AmountUnits& unit = *units[static_cast<std::size_t>(k)];
+        add("expected_error/" + escape_slashes(with_unit(name, unit)), scale[k++]);
     }
     return numbers;
 }

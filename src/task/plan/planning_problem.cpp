@@ -242,11 +242,12 @@ std::vector<NamedNumber> standard_deviations(const Campaign& campaign, const Mat
     const VectorXd deviations =
         covariance.diagonal().cwiseSqrt().cwiseProduct(parameter_scale(campaign));
     const auto names = parameter_names(campaign);
-    const auto is_angle = parameter_is_angle(campaign);
+    const auto units = parameter_units(campaign);
     std::vector<NamedNumber> named;
     for (std::size_t k = 0; k < names.size(); ++k) {
-        named.push_back({names[k] + '_' + std::string(units_of(is_angle[k]).si),
-                         deviations[static_cast<Index>(k)]});
+        const std::string unit(units[k]->si);
+        named.push_back(
+            {unit.empty() ? names[k] : names[k] + '_' + unit, deviations[static_cast<Index>(k)]});
     }
     return named;
 }

@@ -30,9 +30,9 @@ RowMatrixXd visited_positions(const Campaign& truth, const DrawnRobot& robot,
     RowMatrixXd effect(positions.cols(), 6);
     for (Index i = 0; i < visited.rows(); ++i) {
         const Isometry3d flange = world_from_flange(truth, robot.truth, visited.row(i).transpose());
-        truth.sensor->differentiate_positions(
-            flange, model_error_twists(*truth.sensor, flange, robot.truth.sensor),
-            robot.truth.sensor, effect);
+        truth.sensor->differentiate_positions(flange,
+                                              model_error_twists(truth, flange, robot.truth.sensor),
+                                              robot.truth.sensor, effect);
         positions.row(i) += common * (effect * random.normals(6)).transpose();
     }
     return positions;
@@ -63,7 +63,7 @@ std::optional<Estimate> calibrate_robot(const Campaign& campaign, const TrialRob
 RowMatrixXd target_positions(const Campaign& campaign, const Parameters& parameters,
                              const RowMatrixXd& configurations) {
     const Sensor& sensor = *campaign.sensor;
-    const Index targets = sensor.target_count();
+    const Index targets = sensor.position_count();
     RowMatrixXd positions(configurations.rows(), 3 * targets);
     std::vector<Vector3d> on_flange;
     for (Index j = 0; j < targets; ++j) {

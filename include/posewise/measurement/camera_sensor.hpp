@@ -1,0 +1,152 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewise/measurement/sensor.hpp"
+
+namespace posewise {
+
+using Vector2d = Eigen::Vector2d;
+
+/// How a lens departs from a pinhole. Names and formulas are OpenCV's.
+enum class Distortion {
+    None,
+    BrownConrady,  ///< k1 k2 p1 p2, then k3, then k4 k5 k6: 4, 5 or 8 coefficients
+    Fisheye        ///< k1 k2 k3 k4 [Kannala & Brandt 2006]
+};
+
+/// A camera's intrinsic parameters: a point (x, y, z) of its frame (z forwards, x to the right of
+/// the image, y down) is seen at u = fx a + cx, v = fy b + cy, where (a, b) is (x/z, y/z)
+/// distorted.
+struct Intrinsics {
+    double fx = 0, fy = 0, cx = 0, cy = 0;  ///< px
+    Distortion distortion = Distortion::None;
+    std::vector<double> coefficients;
+
+    /// fx, fy, cx, cy in thousands of pixels, then the coefficients.
+    VectorXd values() const;
+    /// The same model with other values().
+    Intrinsics with(const VectorXd& values) const;
+    /// "fx", "fy", "cx", "cy", "k1", ...
+    std::vector<std::string> names() const;
+};
+
+/// Throws InputError if a focal length is not above 0, a number not finite, or the number of
+/// coefficients not one of the model's.
+void check_intrinsics(const Intrinsics& intrinsics);
+
+/// Where a point of the camera's frame is seen, px. With z = 0 it counts as 1 um before the camera;
+/// what is behind it is seen through its centre.
+Vector2d project(const Intrinsics& intrinsics, const Vector3d& point);
+
+/// Direction (x/z, y/z) of a place in the image, px; nothing where the distortion has no inverse.
+std::optional<Vector2d> undistort(const Intrinsics& intrinsics, const Vector2d& pixel);
+
+/// What must hold for a corner to count as seen when poses are planned.
+struct CameraView {
+    std::optional<Vector2d> image;  ///< width and height, px; nothing: any place
+    double most_tilt =
+        1.0471975511965976;        ///< rad, between the board's normal and the line of sight
+    bool is_front_plus_z = false;  ///< which side of the board bears the pattern; else minus z
+    Index least_corners = 4;       ///< a pose must show
+};
+
+/// A camera that sees corners of a board.
+struct CameraSetup {
+    /// The camera is on the flange, the board is the world; else the board is on the flange and the
+    /// camera's frame is the world.
+    bool is_on_flange = false;
+    /// Pose of the board, or of the camera, in the flange frame; nothing: six unknowns.
+    std::optional<Isometry3d> known_place;
+    std::vector<Vector3d> corners;  ///< in the board's frame, m
+    Index first_corner = 1;         ///< number of the first one in files
+    Index columns = 0;              ///< of a chessboard: corners in a row; 0: it is none
+    /// Whether the board may be larger or smaller than stated by a factor, 1 + board.scale, which
+    /// is then the last unknown.
+    bool is_scale_unknown = false;
+    Intrinsics intrinsics;  ///< unknown ones: where a search begins; 0: from what is seen
+    /// Which of Intrinsics::values() are known; empty: all.
+    std::vector<bool> is_known;
+    double sigma = 0;  ///< standard deviation of u and of v, px
+    CameraView view{};
+};
+
+/// A camera that returns the places of n corners in its image, two numbers each, u and v, in
+/// thousands of pixels (pixel_units). Corners are seen or missed by themselves. Unknowns: the pose
+/// in the flange frame of what is on it (position and rotation vector, board.x to board.rz or
+/// camera.x to camera.rz), the unknown intrinsic parameters, camera.fx to camera.k6, board.scale.
+class CameraSensor final : public Sensor {
+  public:
+    /// Throws InputError if there are fewer than 4 corners, if all are in line, if a number is not
+    /// finite, if sigma is below 1e-12 px, or as check_intrinsics(); unknown intrinsics may be 0.
+    explicit CameraSensor(CameraSetup setup);
+
+    const CameraSetup& setup() const { return setup_; }
+    /// Pose of board or camera in the flange frame.
+    Isometry3d place(const VectorXd& unknowns) const;
+    Intrinsics intrinsics(const VectorXd& unknowns) const;
+    /// How many times as large as stated the board is.
+    double board_factor(const VectorXd& unknowns) const {
+        return setup_.is_scale_unknown ? 1 + unknowns[unknowns.size() - 1] : 1;
+    }
+    /// The board as stated in the camera's frame.
+    Isometry3d camera_from_board(const Isometry3d& world_from_flange,
+                                 const VectorXd& unknowns) const;
+    /// Whether a plane board's origin is seen from behind its front.
+    bool is_seen_from_back(const Isometry3d& world_from_flange, const VectorXd& unknowns) const;
+    /// Unknowns for a pose of board or camera and intrinsic parameters.
+    VectorXd unknowns(const Isometry3d& place, const Intrinsics& intrinsics) const;
+
+    /// The origin of board or camera.
+    const Targets& targets() const override { return origin_; }
+    Index target_count() const override { return static_cast<Index>(setup_.corners.size()); }
+    Index row_count() const override { return 2 * target_count(); }
+    bool is_angle(Index) const override { return true; }
+    bool has_pixels() const override { return true; }
+    std::vector<std::string> observation_names() const override;
+    std::vector<std::string> unknown_names() const override;
+    std::vector<bool> unknown_is_angle() const override;
+    std::vector<const AmountUnits*> unknown_units() const override;
+    using Sensor::covariance;
+    using Sensor::predict;
+    void predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                 Eigen::Ref<VectorXd> observation) const override;
+    void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                       const VectorXd& unknowns,
+                       Eigen::Ref<RowMatrixXd> J_measured_parameters) const override;
+    void covariance(const Isometry3d&, const VectorXd&,
+                    Eigen::Ref<MatrixXd> covariance) const override;
+    bool has_constant_covariance() const override { return true; }
+    bool has_view() const override { return true; }
+    VectorXd view_clearances(const Isometry3d& world_from_flange,
+                             const VectorXd& unknowns) const override;
+    Index least_in_view() const override { return setup_.view.least_corners; }
+    std::vector<NoiseNumber> noise_numbers() const override {
+        return {{"sigma_px", {setup_.sigma}}};
+    }
+    SensorWords words() const override;
+    /// Four points of what is on the flange: its origin and one on each axis, from the board's pose
+    /// in the camera's frame by the corners seen.
+    std::optional<ObservedPoints> observed_points() const override;
+    /// Unknown intrinsic parameters are first found from the views [Zhang 2000].
+    std::optional<ObservedPoints> observed_points(const Measurements& means) const override;
+
+  private:
+    bool has_unknown_place() const { return !setup_.known_place; }
+    Index place_count() const { return has_unknown_place() ? 6 : 0; }
+    Index intrinsics_count() const { return static_cast<Index>(unknown_intrinsics_.size()); }
+    ObservedPoints points_with(const Intrinsics& intrinsics) const;
+
+    CameraSetup setup_;
+    Targets origin_;                         ///< of what is on the flange
+    std::vector<Index> unknown_intrinsics_;  ///< indices among Intrinsics::values()
+    std::optional<Vector3d> normal_;         ///< of the front, in the board's frame, if it is plane
+    double widest_ = 1e3;                    ///< of the tangents at which the image does not fold
+};
+
+/// Number of the first target in files that list corners, CameraSetup::first_corner.
+Index first_corner(const Sensor& sensor);
+
+}  // namespace posewise

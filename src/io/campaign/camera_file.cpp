@@ -1,0 +1,140 @@
+#include "camera_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/format/atomic_file.hpp"
+#include "io/format/text.hpp"
+
+namespace posewise::detail {
+namespace {
+
+std::optional<YamlValue> find(const YamlValue& map, std::string_view key) {
+    if (!map.is_map()) return std::nullopt;
+    for (const YamlEntry& entry : map.entries()) {
+        if (entry.key == key) return entry.value;
+    }
+    return std::nullopt;
+}
+
+YamlValue require(const YamlValue& map, std::string_view key) {
+    if (auto value = find(map, key)) return *value;
+    throw map.error(fmt::format("has no key '{}', which a camera needs", key));
+}
+
+/// A list of numbers, or an OpenCV matrix: a map with `data`.
+std::vector<double> numbers_of(const YamlValue& value) {
+    const YamlValue list = value.is_map() ? require(value, "data") : value;
+    std::vector<double> numbers;
+    for (const YamlValue& item : list.list()) {
+        if (!item.is_list()) {
+            numbers.push_back(item.number());
+            continue;
+        }
+        for (const YamlValue& inner : item.list()) numbers.push_back(inner.number());
+    }
+    return numbers;
+}
+
+/// Trailing zeros beyond a model's numbers go; others are refused.
+void set_coefficients(const YamlValue& value, std::vector<double> numbers, bool is_fisheye,
+                      Intrinsics& intrinsics) {
+    intrinsics.distortion = is_fisheye ? Distortion::Fisheye : Distortion::BrownConrady;
+    const std::size_t most = is_fisheye ? 4 : 8;
+    while (numbers.size() > most && numbers.back() == 0) numbers.pop_back();
+    const std::size_t count = numbers.size();
+    if (count == 0) {
+        intrinsics.distortion = Distortion::None;
+    } else if (count > most || (is_fisheye ? count != 4 : count != 4 && count != 5 && count != 8)) {
+        throw value.error(fmt::format("has {} coefficients; must have {}", count,
+                                      is_fisheye ? "4"
+                                                 : "4, 5 or 8 (of a thin prism or a tilted "
+                                                   "sensor there are none here)"));
+    }
+    intrinsics.coefficients = std::move(numbers);
+}
+
+CameraFile read_opencv(const YamlValue& file) {
+    CameraFile camera;
+    const YamlValue matrix = require(file, "camera_matrix");
+    const std::vector<double> K = numbers_of(matrix);
+    if (K.size() != 9) throw matrix.error("must have 9 numbers, row by row");
+    constexpr double none = 1e-9;
+    if (std::abs(K[1]) > none * std::abs(K[0]) || std::abs(K[8] - 1) > none) {
+        throw matrix.error("has skew or a last number other than 1; must be fx 0 cx 0 fy cy 0 0 1");
+    }
+    camera.intrinsics = {K[0], K[4], K[2], K[5], Distortion::None, {}};
+    for (const char* const key :
+         {"distortion_coefficients", "distortion_coeffs", "dist_coeffs", "dist_coeff"}) {
+        const auto value = find(file, key);
+        if (!value) continue;
+        const auto model = find(file, "distortion_model");
+        const bool is_fisheye =
+            model && (model->is_text("fisheye") || model->is_text("equidistant"));
+        set_coefficients(*value, numbers_of(*value), is_fisheye, camera.intrinsics);
+        break;
+    }
+    const auto width = find(file, "image_width"), height = find(file, "image_height");
+    if (width && height) camera.image = Vector2d(width->number(), height->number());
+    return camera;
+}
+
+CameraFile read_kalibr(const YamlValue& cam) {
+    if (const auto model = find(cam, "camera_model"); model && !model->is_text("pinhole")) {
+        throw model->error("is " + quote(model->text()) + "; must be pinhole");
+    }
+    CameraFile camera;
+    const YamlValue intrinsics = require(cam, "intrinsics");
+    const std::vector<double> f = numbers_of(intrinsics);
+    if (f.size() != 4) throw intrinsics.error("must have 4 numbers: fx, fy, cx, cy");
+    camera.intrinsics = {f[0], f[1], f[2], f[3], Distortion::None, {}};
+    const auto model = find(cam, "distortion_model");
+    if (model && !model->is_text("none")) {
+        const bool is_fisheye = model->is_text("equidistant");
+        if (!is_fisheye && !model->is_text("radtan")) {
+            throw model->error("is " + quote(model->text()) +
+                               "; must be radtan, equidistant or none");
+        }
+        const YamlValue value = require(cam, "distortion_coeffs");
+        set_coefficients(value, numbers_of(value), is_fisheye, camera.intrinsics);
+    }
+    if (const auto size = find(cam, "resolution")) {
+        const std::vector<double> px = size->numbers(2);
+        camera.image = Vector2d(px[0], px[1]);
+    }
+    return camera;
+}
+
+/// OpenCV begins with "%YAML:1.0", which is no YAML, and may name its matrices' type.
+std::string without_opencv_words(std::string content) {
+    if (content.starts_with("%YAML:")) content.replace(0, 1, "#");
+    constexpr std::string_view type = "!!opencv-matrix";
+    for (auto at = content.find(type); at != std::string::npos; at = content.find(type, at)) {
+        content.replace(at, type.size(), std::string(type.size(), ' '));
+    }
+    return content;
+}
+
+}  // namespace
+
+CameraFile read_camera_file(const std::string& path, const YamlValue& asked_by) {
+    std::string content;
+    try {
+        content = read_file(path);
+    } catch (const InputError& e) {
+        throw asked_by.error(fmt::format("cannot be read: {}", e.what()));
+    }
+    const YamlValue file = parse_yaml(without_opencv_words(std::move(content)), path);
+    const auto kalibr = find(file, "cam0");
+    CameraFile camera = kalibr ? read_kalibr(*kalibr) : read_opencv(file);
+    try {
+        check_intrinsics(camera.intrinsics);
+    } catch (const InputError& e) {
+        throw file.error(e.what());
+    }
+    return camera;
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,236 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "camera_file.hpp"
+#include "campaign_sections.hpp"
+#include "io/format/text.hpp"
+#include "keys.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
+
+namespace posewise::detail {
+namespace {
+
+constexpr double px_per_kpx = 1e3;
+constexpr std::size_t most_corners = 1000;
+
+/// A place where the file states none: forwards of the flange, on none of its axes.
+Isometry3d generic_place() {
+    Isometry3d place = Isometry3d::Identity();
+    place.translation() = Vector3d(0.03, 0.04, 0.08);
+    return place;
+}
+
+double in_px(const std::optional<YamlMeasure>& measure) {
+    return measure ? px_per_kpx * measure->to_si() : 0;
+}
+
+Distortion distortion_of(const YamlValue& model) {
+    if (model.is_text("none")) return Distortion::None;
+    if (model.is_text("brown_conrady")) return Distortion::BrownConrady;
+    if (model.is_text("fisheye")) return Distortion::Fisheye;
+    throw model.error("is " + quote(model.text()) + "; must be none, brown_conrady or fisheye");
+}
+
+void read_distortion(const YamlValue& value, Intrinsics& intrinsics) {
+    const YamlMap map(value, keys::camera, "distortion");
+    intrinsics.distortion = distortion_of(map.require("model"));
+    const auto coefficients = map.find("coefficients");
+    if (!coefficients) {
+        if (intrinsics.distortion == Distortion::None) return;
+        throw value.error("has no key 'coefficients'; it must be stated, 0 for those to be found");
+    }
+    for (const YamlValue& one : coefficients->list()) {
+        intrinsics.coefficients.push_back(one.number());
+        constexpr double most = 1e6;
+        if (std::abs(intrinsics.coefficients.back()) > most) {
+            throw one.error("is over 1e6 in magnitude, which no lens has");
+        }
+    }
+    const std::size_t count = intrinsics.coefficients.size();
+    const bool is_one = intrinsics.distortion == Distortion::BrownConrady
+                            ? count == 4 || count == 5 || count == 8
+                            : count == (intrinsics.distortion == Distortion::None ? 0U : 4U);
+    if (is_one) return;
+    throw coefficients->error(fmt::format(
+        "has {} numbers; must have 4, 5 or 8 of brown_conrady, 4 of fisheye, 0 of none", count));
+}
+
+/// What is stated in the campaign itself.
+CameraFile read_numbers(const YamlMap& map) {
+    CameraFile camera;
+    Intrinsics& intrinsics = camera.intrinsics;
+    const std::array<std::pair<const char*, double*>, 4> numbers{{{"fx", &intrinsics.fx},
+                                                                  {"fy", &intrinsics.fy},
+                                                                  {"cx", &intrinsics.cx},
+                                                                  {"cy", &intrinsics.cy}}};
+    for (const auto& [name, number] : numbers) *number = in_px(map.find_measure(name));
+    for (const char* const name : {"fx", "fy"}) {
+        const auto focal = map.find_measure(name);
+        if (focal && focal->to_si() < 0) throw focal->value.error("is negative; must be above 0");
+    }
+    if (const auto distortion = map.find("distortion")) read_distortion(*distortion, intrinsics);
+    return camera;
+}
+
+CameraFile read_stated(const YamlValue& value, const YamlMap& map) {
+    const auto file = map.find("file");
+    if (!file) return read_numbers(map);
+    for (const YamlEntry& entry : value.entries()) {
+        if (entry.key == "file" || entry.key == "known") continue;
+        throw entry.value.error("is stated beside 'file'; must be left out, the file has it");
+    }
+    const std::filesystem::path campaign(value.location().path);
+    return read_camera_file((campaign.parent_path() / file->text()).string(), *file);
+}
+
+void read_intrinsics(const YamlValue& value, CameraSetup& setup) {
+    const YamlMap map(value, keys::camera, "intrinsics");
+    const CameraFile camera = read_stated(value, map);
+    setup.intrinsics = camera.intrinsics;
+    const auto names = setup.intrinsics.names();
+    const auto known = map.find("known");
+    setup.is_known = known ? read_known(*known, names) : std::vector<bool>(names.size(), true);
+    for (std::size_t k = 0; k < 2; ++k) {
+        const double focal = k == 0 ? setup.intrinsics.fx : setup.intrinsics.fy;
+        if (setup.is_known[k] && !(focal > 0)) {
+            throw value.error(fmt::format(
+                "has no {}_px above 0, which is said to be known; must be stated, or known: false",
+                names[k]));
+        }
+    }
+    if ((setup.intrinsics.fx > 0) != (setup.intrinsics.fy > 0)) {
+        throw value.error("states one focal length; must state both fx_px and fy_px, or none");
+    }
+    if (!camera.image) return;
+    if (!setup.view.image) setup.view.image = camera.image;
+    if (*setup.view.image == *camera.image) return;
+    throw value.error(fmt::format(
+        "is of an image of {:g} by {:g} px, image_px is {:g} by {:g}; must be of the same image, "
+        "neither scaled nor turned",
+        camera.image->x(), camera.image->y(), setup.view.image->x(), setup.view.image->y()));
+}
+
+Index read_count(const YamlValue& value) {
+    const std::uint64_t count = value.natural_number();
+    if (count >= 2 && count <= most_corners) return static_cast<Index>(count);
+    throw value.error(fmt::format("is {}; must be from 2 to {}", count, most_corners));
+}
+
+std::vector<Vector3d> chessboard(const YamlMap& board, const YamlValue& value) {
+    const Index columns = read_count(board.require("columns"));
+    const Index rows = read_count(board.require("rows"));
+    if (static_cast<std::size_t>(columns * rows) > most_corners) {
+        throw value.error(
+            fmt::format("has {} corners; must have at most {}", columns * rows, most_corners));
+    }
+    const double square = read_positive(board.require_measure("square"), false, 10);
+    std::vector<Vector3d> corners;
+    for (Index k = 0; k < rows * columns; ++k) {
+        corners.emplace_back(square * static_cast<double>(k % columns),
+                             square * static_cast<double>(k / columns), 0);
+    }
+    return corners;
+}
+
+std::vector<Vector3d> read_points(const YamlMeasure& points) {
+    const std::vector<YamlValue> items = points.value.list();
+    if (items.size() < 4 || items.size() > most_corners) {
+        throw points.value.error(
+            fmt::format("lists {} points; must be from 4 to {}", items.size(), most_corners));
+    }
+    std::vector<Vector3d> corners;
+    for (const YamlValue& item : items) {
+        corners.push_back(YamlMeasure{item, points.unit}.vector_to_si());
+        for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
+            if ((corners[k] - corners.back()).norm() > 1e-6) continue;
+            throw item.error(
+                fmt::format("is at the place of point {}; must be at one of its own", k + 1));
+        }
+    }
+    return corners;
+}
+
+void read_board(const YamlValue& value, CameraSetup& setup) {
+    const YamlMap board(value, keys::camera, "board");
+    const auto points = board.find_measure("points");
+    if (points.has_value() == board.find("columns").has_value()) {
+        throw value.error("must have either columns, rows and square_mm, or points_mm");
+    }
+    setup.corners = points ? read_points(*points) : chessboard(board, value);
+    if (!points) setup.columns = read_count(board.require("columns"));
+    const auto first = board.find("first_point");
+    if (!first) return;
+    setup.first_corner = static_cast<Index>(first->natural_number());
+    if (setup.first_corner > 1) {
+        throw first->error(fmt::format("is {}; must be 0 or 1", setup.first_corner));
+    }
+}
+
+void read_view(const YamlValue& value, CameraSetup& setup) {
+    const YamlMap view(value, keys::camera, "view");
+    if (const auto tilt = view.find_measure("most_tilt")) {
+        setup.view.most_tilt = read_positive(*tilt, false, 1.5707963267948966);
+    }
+    if (const auto least = view.find("least_corners")) {
+        setup.view.least_corners = static_cast<Index>(least->natural_number());
+        if (setup.view.least_corners < 1 || setup.view.least_corners > std::ssize(setup.corners)) {
+            throw least->error(fmt::format("is {}; must be from 1 to the board's {} corners",
+                                           setup.view.least_corners, setup.corners.size()));
+        }
+    }
+    const auto front = view.find("front");
+    if (!front) return;
+    setup.view.is_front_plus_z = front->is_text("+z");
+    if (!setup.view.is_front_plus_z && !front->is_text("-z")) {
+        throw front->error("is " + quote(front->text()) + "; must be -z or +z");
+    }
+}
+
+void read_image(const YamlMap& sensor, CameraSetup& setup) {
+    const auto image = sensor.find_measure("image");
+    if (!image) return;
+    const VectorXd size = px_per_kpx * image->list_to_si(2);
+    if (!(size.minCoeff() >= 1)) {
+        throw image->value.error("must be a width and a height, each at least 1 px");
+    }
+    setup.view.image = size;
+}
+
+}  // namespace
+
+SensorSection read_camera(const YamlValue& value) {
+    const YamlMap sensor(value, keys::sensor, "camera");
+    CameraSetup setup;
+    const YamlValue mounting = sensor.require("camera");
+    setup.is_on_flange = mounting.is_text("flange");
+    if (!setup.is_on_flange && !mounting.is_text("fixed")) {
+        throw mounting.error("is " + quote(mounting.text()) + "; must be flange or fixed");
+    }
+    setup.sigma = px_per_kpx * read_positive(sensor.require_measure("sigma"));
+    read_image(sensor, setup);
+    read_intrinsics(sensor.require("intrinsics"), setup);
+    const YamlValue board = sensor.require("board");
+    read_board(board, setup);
+    if (const auto view = sensor.find("view")) read_view(*view, setup);
+    const auto place_value = sensor.find("place");
+    Isometry3d place = generic_place();
+    if (place_value) {
+        const YamlMap map(*place_value, keys::places, "place");
+        place = read_frame(map);
+        const auto known = map.find("known");
+        if (known && known->boolean()) setup.known_place = place;
+    }
+    try {
+        auto camera = std::make_shared<CameraSensor>(std::move(setup));
+        VectorXd unknowns = camera->unknowns(place, camera->setup().intrinsics);
+        const bool has_intrinsics = camera->setup().intrinsics.fx > 0;
+        return {std::move(camera), std::move(unknowns), place_value && has_intrinsics};
+    } catch (const InputError& e) {
+        throw board.error(std::string("cannot be used: ") + e.what());
+    }
+}
+
+}  // namespace posewise::detail

@@ -1,0 +1,106 @@
+#include <algorithm>
+#include <cmath>
+
+#include "posewise/calibrator/estimate.hpp"
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
+#include "posewise/task/doubts.hpp"
+
+namespace posewise {
+namespace {
+
+double misfit_of(const Campaign& campaign, const Measurements& measured,
+                 const Parameters& parameters) {
+    return make_metrics(mean_residuals(campaign, parameters, measured), *campaign.sensor)
+        .orientation_rms;
+}
+
+/// Whether the robot moved enough to tell how large the board is, and it is of another size.
+void find_board_factor(const Campaign& campaign, const CameraSensor& camera,
+                       const Measurements& measured, const Parameters& registered_as_stated,
+                       CameraDoubt& doubt) {
+    CameraSetup setup = camera.setup();
+    if (setup.is_scale_unknown) return;
+    setup.is_scale_unknown = true;
+    Campaign open = campaign;
+    const auto sensor = std::make_shared<CameraSensor>(setup);
+    open.sensor = sensor;
+    open.nominal.sensor.conservativeResize(open.nominal.sensor.size() + 1);
+    open.nominal.sensor.tail<1>().setZero();
+    open.prior.reset();
+    open.spread.is_prior = true;  // whatever of its errors the poses do not tell
+    const Registration registered = register_base_and_targets(open, measured);
+    if (!registered.is_determined()) return;
+    // The robot's own errors hide it before they are found.
+    const Estimate scaled = identify(open, measured, registered.parameters);
+    if (scaled.covariance.size() == 0) return;
+    const double factor = sensor->board_factor(scaled.parameters.sensor);
+    const double sigma = standard_deviations(scaled).tail<1>()[0];
+    constexpr double clearly = 5;    // standard deviations
+    constexpr double least = 0.004;  // lengths of robots are wrong by less
+    if (!(std::abs(factor - 1) > std::max(least, clearly * sigma))) return;
+    Campaign as_stated = open;
+    as_stated.sensor = campaign.sensor;
+    as_stated.nominal = campaign.nominal;
+    const Estimate stated = identify(as_stated, measured, registered_as_stated);
+    doubt.misfit = misfit_of(campaign, measured, stated.parameters);
+    doubt.scaled_misfit = misfit_of(open, measured, scaled.parameters);
+    doubt.board_factor = factor;
+    if (setup.columns > 0) doubt.square = (setup.corners[1] - setup.corners[0]).norm();
+}
+
+/// The middle of the image or, if its size is not stated, of what is seen; and its extents, px.
+std::array<Vector2d, 2> image_of(const CameraSetup& setup, const Measurements& measured) {
+    if (setup.view.image) return {*setup.view.image / 2, *setup.view.image};
+    Vector2d least = Vector2d::Constant(INFINITY), most = -least;
+    for (Index i = 0; i < measured.is_seen.rows(); ++i) {
+        for (const Index k : targets_seen(measured.is_seen.row(i))) {
+            const Vector2d place = 1e3 * measured.observations.row(i).segment<2>(2 * k).transpose();
+            least = least.cwiseMin(place);
+            most = most.cwiseMax(place);
+        }
+    }
+    return {(least + most) / 2, most - least};
+}
+
+void check_principal_point(const CameraSensor& camera, const Measurements& measured,
+                           const VectorXd& unknowns, CameraDoubt& doubt) {
+    const auto [middle, extents] = image_of(camera.setup(), measured);
+    const Intrinsics intrinsics = camera.intrinsics(unknowns);
+    const Vector2d off = Vector2d(intrinsics.cx, intrinsics.cy) - middle;
+    constexpr double far = 0.25;
+    if (!(off.cwiseQuotient(extents).cwiseAbs().maxCoeff() > far)) return;
+    doubt.principal_point = {intrinsics.cx, intrinsics.cy};
+    doubt.middle = {middle.x(), middle.y()};
+    doubt.is_of_image = camera.setup().view.image.has_value();
+}
+
+bool is_seen_from_back(const Campaign& campaign, const CameraSensor& camera,
+                       const Measurements& measured, const Parameters& registered) {
+    Index backs = 0;
+    for (Index i = 0; i < measured.configuration_count(); ++i) {
+        const Isometry3d flange =
+            world_from_flange(campaign, registered, measured.configurations.row(i).transpose());
+        backs += camera.is_seen_from_back(flange, registered.sensor) ? 1 : 0;
+    }
+    return 2 * backs > measured.configuration_count();
+}
+
+}  // namespace
+
+std::optional<CameraDoubt> find_camera_doubt(const Campaign& campaign, const Measurements& measured,
+                                             const Parameters& registered) {
+    const auto* const camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
+    if (camera == nullptr) return std::nullopt;
+    CameraDoubt doubt;
+    find_board_factor(campaign, *camera, measured, registered, doubt);
+    check_principal_point(*camera, measured, registered.sensor, doubt);
+    doubt.is_seen_from_back = is_seen_from_back(campaign, *camera, measured, registered);
+    if (doubt.board_factor == 1 && !doubt.principal_point && !doubt.is_seen_from_back) {
+        return std::nullopt;
+    }
+    return doubt;
+}
+
+}  // namespace posewise

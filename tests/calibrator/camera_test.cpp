@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include "../../src/measurement/feasible.hpp"
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "support/robots.hpp"
+#include "support/sensors.hpp"
+#include "support/sweep.hpp"
+
+namespace posewise {
+namespace {
+
+using namespace testing;
+
+/// Of a robot that is exactly as stated.
+Campaign hand_eye(CameraSetup setup) {
+    setup.corners = chessboard(6, 4, 0.04);
+    setup.view.least_corners = 6;
+    const Campaign campaign = before_camera(tracked_campaign(fanuc()), setup);
+    return with_robot(campaign, without_parameters(campaign.robot));
+}
+
+CameraSetup on_flange_with_lens() {
+    CameraSetup setup = fixed_camera();
+    setup.is_on_flange = true;
+    return setup;
+}
+
+CameraSetup unknown_lens(CameraSetup setup) {
+    setup.is_known.assign(setup.intrinsics.names().size(), false);
+    return setup;
+}
+
+/// The same without what it knows of places and of unknown intrinsic parameters.
+Campaign blind(const Campaign& campaign) {
+    Campaign blind = campaign;
+    CameraSetup setup = dynamic_cast<const CameraSensor&>(*campaign.sensor).setup();
+    VectorXd values = setup.intrinsics.values();
+    for (std::size_t k = 0; k < setup.is_known.size(); ++k) {
+        if (!setup.is_known[k]) values[static_cast<Index>(k)] = 0;
+    }
+    setup.intrinsics = setup.intrinsics.with(values);
+    blind.sensor = std::make_shared<CameraSensor>(setup);
+    blind.nominal.world_from_base.setIdentity();
+    blind.nominal.sensor.setZero();
+    blind.has_nominal_base = blind.has_nominal_targets = false;
+    return blind;
+}
+
+TEST(Camera, IsRegisteredFromNothing) {
+    for (const CameraSetup& setup :
+         {fixed_camera(), on_flange_with_lens(), unknown_lens(fixed_camera()),
+          unknown_lens(on_flange_with_lens())}) {
+        Campaign exact = hand_eye(setup);
+        exact.model_error = exact.model_error_orientation = 0;
+        const Simulation simulated =
+            simulate(exact, {.pose_count = 20, .repeats = 1, .truth_seed = 4, .seed = 3});
+        const Registration found = register_base_and_targets(blind(exact), simulated.measurements);
+        ASSERT_TRUE(found.is_determined()) << found.undetermined;
+        const Estimate estimate = identify(exact, simulated.measurements, found.parameters);
+        EXPECT_NEAR(estimate.variance_factor, 1,
+                    5 * std::sqrt(2.0 / static_cast<double>(estimate.degrees_of_freedom)));
+        const VectorXd error = step_between(exact, simulated.truth, estimate.parameters);
+        EXPECT_LT(error.cwiseQuotient(standard_deviations(estimate)).cwiseAbs().maxCoeff(), 5);
+    }
+}
+
+TEST(Camera, IsRegisteredFromPartsOfTheBoard) {
+    Campaign exact = hand_eye(fixed_camera());
+    exact.model_error = exact.model_error_orientation = 0;
+    Simulation simulated =
+        simulate(exact, {.pose_count = 30, .repeats = 1, .truth_seed = 4, .seed = 3});
+    Measurements& measured = simulated.measurements;
+    for (Index i = 0; i < measured.is_seen.rows(); ++i) {
+        for (Index k = 0; k < measured.is_seen.cols(); ++k) {
+            if ((k + i) % 3 == 0) measured.is_seen(i, k) = false;
+        }
+    }
+    measured.is_seen.row(7).setConstant(false);  // too few for a pose
+    measured.is_seen.row(7).head(3).setConstant(true);
+    const Registration found = register_base_and_targets(blind(exact), measured);
+    ASSERT_TRUE(found.is_determined()) << found.undetermined;
+    EXPECT_LT((found.parameters.sensor - simulated.truth.sensor).head<3>().norm(), 1e-3);
+}
+
+TEST(Camera, IsNotDeterminedByTurnsAboutOneAxis) {
+    Campaign exact = hand_eye(fixed_camera());
+    const Simulation simulated =
+        simulate(exact, {.pose_count = 1, .repeats = 1, .truth_seed = 4, .seed = 3});
+    RowMatrixXd turned = simulated.measurements.configurations.row(0).replicate(8, 1);
+    for (Index i = 0; i < 8; ++i) turned(i, 5) += 0.02 * static_cast<double>(i);
+    const Measurements measured = simulate_measurements(exact, simulated.truth, turned, 1, 5);
+    EXPECT_FALSE(register_base_and_targets(blind(exact), measured).is_determined());
+}
+
+/// What its covariance says: of 40 small campaigns, the squares of the errors in standard
+/// deviations.
+TEST(Camera, FindsHandEyeAndIntrinsicsAsItsCovarianceSays) {
+    Campaign campaign = hand_eye(unknown_lens(fixed_camera()));
+    campaign.model_error = campaign.model_error_orientation = 0;
+    double squares = 0;
+    double count = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const Simulation simulated =
+            simulate(campaign, {.pose_count = 12, .repeats = 1, .truth_seed = seed, .seed = seed});
+        const Estimate estimate = identify(campaign, simulated.measurements, simulated.truth);
+        const VectorXd error = step_between(campaign, simulated.truth, estimate.parameters);
+        squares += error.cwiseQuotient(standard_deviations(estimate)).squaredNorm();
+        count += static_cast<double>(error.size());
+    }
+    EXPECT_NEAR(squares / count, 1, 0.35);
+}
+
+}  // namespace
+}  // namespace posewise

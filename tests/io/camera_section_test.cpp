@@ -1,0 +1,233 @@
+#include <gtest/gtest.h>
+
+#include "posewise/io/campaign_file.hpp"
+#include "posewise/io/measurements_file.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "support/slips.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace posewise::io {
+namespace {
+
+using testing::input_error_of;
+using testing::replaced;
+using testing::TemporaryFolder;
+
+const std::string head =
+    "name: arm\n"
+    "robot:\n"
+    "  joints:\n"
+    "    q1: {limits_deg: [-170, 170]}\n"
+    "    q2: {limits_deg: [-90, 90]}\n"
+    "  elements: [Rz q1, Tx 400 mm, Ry q2, Tx 300 mm]\n";
+
+const std::string camera =
+    "sensor:\n"
+    "  kind: camera\n"
+    "  camera: flange\n"
+    "  image_px: [1280, 960]\n"
+    "  sigma_px: 0.25\n"
+    "  intrinsics: {fx_px: 1210, fy_px: 1205, cx_px: 655, cy_px: 470, known: [cx, cy],\n"
+    "    distortion: {model: brown_conrady, coefficients: [-0.1, 0.02, 0, 0]}}\n"
+    "  board: {columns: 3, rows: 2, square_mm: 25}\n"
+    "  place: {position_mm: [10, 20, 30], rpy_deg: [0, 0, 90]}\n"
+    "  view: {most_tilt_deg: 45, least_corners: 5, front: +z}\n";
+
+CampaignFile read(const std::string& text) { return parse_campaign(head + text, "c.yaml"); }
+
+const CameraSetup& setup_of(const Campaign& campaign) {
+    return dynamic_cast<const CameraSensor&>(*campaign.sensor).setup();
+}
+
+TEST(ReadCamera, TakesWhatIsStated) {
+    const Campaign campaign = read(camera);
+    const CameraSetup& setup = setup_of(campaign);
+    EXPECT_TRUE(setup.is_on_flange);
+    EXPECT_NEAR(setup.sigma, 0.25, 1e-12);
+    EXPECT_NEAR(setup.intrinsics.fx, 1210, 1e-9);
+    EXPECT_EQ(setup.intrinsics.distortion, Distortion::BrownConrady);
+    EXPECT_EQ(setup.intrinsics.coefficients, (std::vector<double>{-0.1, 0.02, 0, 0}));
+    EXPECT_EQ(setup.is_known,
+              (std::vector<bool>{false, false, true, true, false, false, false, false}));
+    ASSERT_EQ(setup.corners.size(), 6U);
+    EXPECT_EQ(setup.corners[4], Vector3d(0.025, 0.025, 0));
+    EXPECT_NEAR(setup.view.most_tilt, to_radians(45), 1e-15);
+    EXPECT_EQ(setup.view.least_corners, 5);
+    EXPECT_TRUE(setup.view.is_front_plus_z);
+    EXPECT_TRUE(campaign.has_nominal_targets);
+    EXPECT_NEAR(campaign.nominal.sensor[6], 1.21, 1e-12);  // 1000 px
+    EXPECT_EQ(campaign.sensor->unknown_names()[6], "camera.fx");
+}
+
+TEST(ReadCamera, FindsWhatItIsNotTold) {
+    const Campaign campaign = read(
+        "sensor: {kind: camera, camera: fixed, sigma_px: 0.3, intrinsics: {known: false},\n"
+        "  board: {points_mm: [[0, 0, 0], [50, 0, 0], [50, 50, 0], [0, 50, 20]]}}\n");
+    EXPECT_FALSE(campaign.has_nominal_targets);
+    EXPECT_FALSE(setup_of(campaign).is_on_flange);
+    EXPECT_EQ(setup_of(campaign).intrinsics.fx, 0);
+    EXPECT_EQ(campaign.sensor->unknown_names().size(), 10U);
+}
+
+TEST(ReadCamera, SaysWhatIsWrong) {
+    const auto expect_error = [](const std::string& good, const std::string& bad,
+                                 const std::string& message) {
+        const std::string error = input_error_of([&] { read(replaced(camera, good, bad)); });
+        EXPECT_NE(error.find(message), std::string::npos) << error;
+        EXPECT_EQ(error.substr(0, 7), "c.yaml:") << error;
+    };
+    expect_error("camera: flange", "camera: hand", "must be flange or fixed");
+    expect_error("sigma_px: 0.25", "sigma_px: 0", "must be positive");
+    expect_error("sigma_px: 0.25", "sigma_mm: 0.25", "sigma_mm");
+    expect_error("fx_px: 1210", "fx_px: -1210", "is negative");
+    expect_error("fx_px: 1210, ", "", "one focal length");
+    expect_error("brown_conrady", "plumb_bob", "must be none, brown_conrady or fisheye");
+    expect_error("[-0.1, 0.02, 0, 0]", "[-0.1, 0.02, 0]", "has 3 numbers");
+    expect_error("known: [cx, cy]", "known: [cz]", "cz");
+    expect_error("columns: 3", "columns: 1", "must be from 2");
+    expect_error("columns: 3, rows: 2, ", "", "must have either columns");
+    expect_error("most_tilt_deg: 45", "most_tilt_deg: 100", "must be");
+    expect_error("least_corners: 5", "least_corners: 7", "from 1 to the board's 6 corners");
+    expect_error("front: +z", "front: up", "must be -z or +z");
+    expect_error("[1280, 960]", "[1280, 0]", "at least 1 px");
+    expect_error("{columns: 3, rows: 2, square_mm: 25}",
+                 "{points_mm: [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0]]}",
+                 "in one line");
+    expect_error("{columns: 3, rows: 2, square_mm: 25}",
+                 "{points_mm: [[0, 0, 0], [1, 0, 0], [1, 0, 0], [3, 0, 1]]}",
+                 "at the place of point 2");
+}
+
+// ---- Cameras from files ----
+
+const std::string opencv =
+    "%YAML:1.0\n---\nimage_width: 1280\nimage_height: 960\n"
+    "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+    "   data: [ 1210., 0., 655., 0., 1205., 470., 0., 0., 1. ]\n"
+    "distortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n"
+    "   data: [ -0.1, 0.02, 1.0e-03, 0., 0.01 ]\n";
+const std::string kalibr =
+    "cam0:\n  camera_model: pinhole\n  intrinsics: [1210, 1205, 655, 470]\n"
+    "  distortion_model: equidistant\n  distortion_coeffs: [0.1, 0.02, 0, 0]\n"
+    "  resolution: [1280, 960]\n  rostopic: /cam0/image_raw\n";
+
+CampaignFile read_with_file(const std::string& text, const std::string& change = "") {
+    const TemporaryFolder folder;
+    folder.write("camera.yaml", text);
+    return read_campaign(folder.write(
+        "c.yaml", head + "sensor: {kind: camera, camera: fixed, sigma_px: 0.3, " + change +
+                      "intrinsics: {file: camera.yaml},\n"
+                      "  board: {columns: 3, rows: 2, square_mm: 25}}\n"));
+}
+
+TEST(ReadCamera, TakesFilesOfOpenCvAndKalibr) {
+    const CampaignFile of_opencv = read_with_file(opencv);
+    const CameraSetup& setup = setup_of(of_opencv);
+    EXPECT_EQ(setup.intrinsics.fy, 1205);
+    EXPECT_EQ(setup.intrinsics.cx, 655);
+    EXPECT_EQ(setup.intrinsics.coefficients, (std::vector<double>{-0.1, 0.02, 1e-3, 0, 0.01}));
+    EXPECT_EQ(*setup.view.image, Vector2d(1280, 960));
+    const CampaignFile of_kalibr = read_with_file(kalibr);
+    EXPECT_EQ(setup_of(of_kalibr).intrinsics.distortion, Distortion::Fisheye);
+    EXPECT_EQ(setup_of(of_kalibr).intrinsics.cy, 470);
+}
+
+TEST(ReadCamera, RefusesFilesOfAnotherImageOrAnotherModel) {
+    const auto error_of = [](const std::string& text, const std::string& change = "") {
+        return input_error_of([&] { read_with_file(text, change); });
+    };
+    EXPECT_NE(error_of(opencv, "image_px: [640, 480], ").find("neither scaled nor turned"),
+              std::string::npos);
+    EXPECT_NE(error_of(replaced(opencv, "1.0e-03, 0., 0.01", "0, 0, 1, 2, 3, 4, 5, 6, 7, 8"))
+                  .find("coefficients"),
+              std::string::npos);
+    EXPECT_NE(error_of(replaced(kalibr, "pinhole", "omni")).find("must be pinhole"),
+              std::string::npos);
+    EXPECT_NE(error_of("image_width: 3\n").find("camera_matrix"), std::string::npos);
+    EXPECT_NE(error_of(replaced(opencv, "[ 1210.", "[ -1210.")).find("must be above 0"),
+              std::string::npos);
+}
+
+// ---- Corners ----
+
+Measurements corners(const std::string& text, const std::string& campaign = camera) {
+    const TemporaryFolder folder;
+    return read_measurements_csv(folder.write("m.csv", text), read(campaign));
+}
+
+TEST(ReadCorners, TakesARowForEachInAnyOrder) {
+    const Measurements measured = corners(
+        "config,q1_deg,q2_deg,point,u_px,v_px\n"
+        "a,10,20,2,640,480\n"
+        "b,11,20,1,100,200\n"
+        "a,10,20,6,700.5,500\n");
+    EXPECT_EQ(measured.ids, (std::vector<std::string>{"a", "b"}));
+    ASSERT_EQ(measured.observations.cols(), 12);
+    EXPECT_EQ(measured.is_seen.row(0).count(), 2);
+    EXPECT_TRUE(measured.is_seen(0, 1));
+    EXPECT_TRUE(measured.is_seen(0, 5));
+    EXPECT_EQ(measured.observations(0, 2), 0.64);
+    EXPECT_EQ(measured.observations(0, 10), 0.7005);
+    EXPECT_EQ(measured.observations(1, 1), 0.2);
+}
+
+TEST(ReadCorners, CountsFromZeroWhereTheCampaignSaysSo) {
+    const std::string from_zero =
+        replaced(camera, "square_mm: 25", "square_mm: 25, first_point: 0");
+    const Measurements measured =
+        corners("config,q1_deg,q2_deg,point,u_px,v_px\na,10,20,0,640,480\n", from_zero);
+    EXPECT_TRUE(measured.is_seen(0, 0));
+}
+
+TEST(ReadCorners, TakesAViewARow) {
+    const Measurements measured = corners(
+        "config,q1_deg,q2_deg,p1_u_px,p1_v_px,p2_u_px,p2_v_px,p3_u_px,p3_v_px,p4_u_px,p4_v_px,"
+        "p5_u_px,p5_v_px,p6_u_px,p6_v_px\n"
+        "a,10,20,1,2,3,4,,,7,8,9,10,11,12\n");
+    EXPECT_EQ(measured.is_seen.row(0).count(), 5);
+    EXPECT_FALSE(measured.is_seen(0, 2));
+    EXPECT_EQ(measured.observations(0, 11), 0.012);
+}
+
+TEST(ReadCorners, AreWrittenAsTheyAreRead) {
+    const CampaignFile campaign = read(camera);
+    const Measurements measured = corners(
+        "config,sample,q1_deg,q2_deg,point,u_px,v_px\n"
+        "a,0,10,20,2,640.25,480\na,0,10,20,3,641,480\na,1,10,20,2,640,481\nb,0,11,20,1,100,200\n");
+    const TemporaryFolder folder;
+    const std::string path = folder.write("m.csv", "");
+    write_measurements_csv(path, campaign, measured, {});
+    const Measurements again = read_measurements_csv(path, campaign);
+    EXPECT_EQ(again.first_sample, measured.first_sample);
+    EXPECT_LT((again.observations - measured.observations).norm(), 1e-15);
+    EXPECT_TRUE((again.is_seen == measured.is_seen).all());
+}
+
+TEST(ReadCorners, SayWhatIsWrongWhereItStands) {
+    const auto expect_error = [](const std::string& row, const std::string& message) {
+        const std::string error = input_error_of([&] {
+            corners("config,q1_deg,q2_deg,point,u_px,v_px\na,10,20,2,640,480\n" + row + '\n');
+        });
+        EXPECT_NE(error.find(message), std::string::npos) << error;
+        EXPECT_NE(error.find("m.csv:3:"), std::string::npos) << error;
+    };
+    expect_error("a,10,20,7,640,480", "corner of the board, 1 to 6");
+    expect_error("a,10,20,0,640,480", "first_point: 0");
+    expect_error("a,10,20,1.5,640,480", "corner of the board");
+    expect_error("a,10,20,x,640,480", "corner of the board");
+    expect_error("a,10,20,2,640,480", "occurs twice");
+    expect_error("a,10,21,3,640,480", "other joint values in line 2");
+    expect_error("a,10,20,3,1300,480", "outside of the image; must be from 0 to 1280");
+    expect_error("a,10,20,3,480,1200", "are u and v swapped?");
+    expect_error("a,10,20,3,,480", "must be a finite number");
+}
+
+TEST(ReadCorners, NameTheColumnsThatAreMissing) {
+    const std::string error =
+        input_error_of([&] { corners("config,q1_deg,q2_deg,u_px,v_px\na,10,20,640,480\n"); });
+    EXPECT_NE(error.find("missing column point"), std::string::npos) << error;
+}
+
+}  // namespace
+}  // namespace posewise::io

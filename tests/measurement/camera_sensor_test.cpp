@@ -1,0 +1,298 @@
+#include "posewise/measurement/camera_sensor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "../../src/measurement/board_pose.hpp"
+#include "../../src/measurement/camera_model.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/measurement/constraints.hpp"
+#include "posewise/model/chain.hpp"
+#include "support/derivative_check.hpp"
+#include "support/sensors.hpp"
+#include "support/sweep.hpp"
+
+namespace posewise {
+namespace {
+
+using namespace detail;
+using namespace testing;
+
+const Intrinsics pinhole{1210, 1190, 655, 470, Distortion::None, {}};
+
+Intrinsics with_lens(Distortion distortion, std::size_t count) {
+    const std::vector<double> numbers =
+        distortion == Distortion::Fisheye
+            ? std::vector<double>{0.02, -0.01, 0.003, -0.001}
+            : std::vector<double>{-0.12, 0.05, 1e-3, -2e-3, 0.01, 0.02, -0.03, 0.004};
+    Intrinsics lens = pinhole;
+    lens.distortion = distortion;
+    lens.coefficients.assign(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(count));
+    return lens;
+}
+
+const std::vector<Intrinsics>& every_lens() {
+    static const std::vector<Intrinsics> all{
+        pinhole, with_lens(Distortion::BrownConrady, 4), with_lens(Distortion::BrownConrady, 5),
+        with_lens(Distortion::BrownConrady, 8), with_lens(Distortion::Fisheye, 4)};
+    return all;
+}
+
+/// Of cv2.projectPoints() and cv2.fisheye.projectPoints(), OpenCV 4.6, in the order of every_lens()
+/// without the first, for three points.
+TEST(Camera, SeesPointsWhereOpenCvDoes) {
+    const std::vector<Vector3d> points{{0.1, -0.2, 1.5}, {-0.4, 0.3, 1.2}, {0.5, 0.45, 1.1}};
+    const std::vector<std::vector<Vector2d>> expected{
+        {{655 + 1210 * 0.1 / 1.5, 470 - 1190 * 0.2 / 1.5},
+         {655 - 1210 * 0.4 / 1.2, 470 + 1190 * 0.3 / 1.2},
+         {655 + 1210 * 0.5 / 1.1, 470 + 1190 * 0.45 / 1.1}},
+        {{735.3567473251029, 311.86359341563787},
+         {258.30202128343615, 762.5024418885031},
+         {1182.7090918482345, 938.3340226193876}},
+        {{735.356756177412, 311.86357600365795},
+         {258.2809157338641, 762.5180094116379},
+         {1182.996740490978, 938.5886273271383}},
+        {{735.3222022612031, 311.93154155785396},
+         {259.3023467093166, 761.7645985475127},
+         {1181.1538031309074, 936.9573993001666}},
+        {{735.1116683998225, 312.42498281687796},
+         {271.7396534476713, 752.6940985933498},
+         {1151.1932833017868, 909.192567286127}}};
+    for (std::size_t lens = 0; lens < expected.size(); ++lens) {
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const Vector2d seen = project(every_lens()[lens], points[k]);
+            EXPECT_LT((seen - expected[lens][k]).norm(), 1e-9) << lens << ' ' << k;
+        }
+    }
+}
+
+TEST(Camera, HasTheDerivativesOfItsProjectionByPointAndParameters) {
+    for (const Intrinsics& lens : every_lens()) {
+        SCOPED_TRACE(lens.coefficients.size());
+        RandomStream stream(51);
+        for (Index item = 0; item < 20; ++item) {
+            const Vector3d point = Vector3d(0, 0, 1.5) + random_vector(stream, 3, 0.6);
+            Projection projection;
+            differentiate_projection(lens_of(lens), point, projection);
+            const VectorXd values = lens.values();
+            VectorXd both(3 + values.size());
+            both << point, values;
+            MatrixXd J(2, both.size());
+            J << projection.by_point, projection.by_values;
+            expect_is_jacobian(
+                J,
+                [&](const VectorXd& x) -> VectorXd {
+                    return 1e-3 * project(lens.with(x.tail(values.size())), x.head<3>());
+                },
+                both);
+        }
+    }
+}
+
+TEST(Camera, UndistortsWhatItDistorts) {
+    for (const Intrinsics& lens : every_lens()) {
+        RandomStream stream(52);
+        for (Index item = 0; item < 100; ++item) {
+            const Vector2d direction = random_vector(stream, 2, 0.5);
+            const auto found = undistort(lens, project(lens, {direction.x(), direction.y(), 1}));
+            ASSERT_TRUE(found);
+            EXPECT_LT((*found - direction).norm(), 1e-10);
+        }
+    }
+}
+
+TEST(Camera, HasNoDirectionForPlacesBeyondWhereTheImageFolds) {
+    Intrinsics lens = pinhole;
+    lens.distortion = Distortion::BrownConrady;
+    lens.coefficients = {-0.4, 0, 0, 0};  // r (1 - 0.4 r^2) is largest at 0.913, 0.609
+    EXPECT_NEAR(widest_tangent(lens_of(lens)), 0.913, 0.02);
+    EXPECT_TRUE(undistort(lens, {655 + 1210 * 0.6, 470}));
+    EXPECT_FALSE(undistort(lens, {655 + 1210 * 0.62, 470}));
+}
+
+/// The board's corners somewhere before the camera, leaning.
+Isometry3d somewhere(RandomStream& stream) {
+    Isometry3d pose(rotation_from_vector(random_vector(stream, 3, 0.6)));
+    pose.translation() = Vector3d(-0.1, -0.07, 0.7) + random_vector(stream, 3, 0.1);
+    return pose;
+}
+
+BoardView view_of(const std::vector<Vector3d>& corners, const Intrinsics& lens,
+                  const Isometry3d& pose) {
+    BoardView view{corners, {}};
+    for (const Vector3d& corner : corners) view.pixels.push_back(project(lens, pose * corner));
+    return view;
+}
+
+TEST(BoardPose, IsFoundFromCornersInAPlaneAndFromOthers) {
+    const std::vector<Vector3d> solid{{0, 0, 0},      {0.2, 0, 0},     {0, 0.15, 0.02},
+                                      {0.1, 0, 0.12}, {0.2, 0.2, 0.1}, {0.05, 0.1, 0.2},
+                                      {0.1, 0.1, 0.1}};
+    for (const auto& corners : {chessboard(5, 4, 0.04), chessboard(2, 2, 0.1), solid}) {
+        for (const Intrinsics& lens : every_lens()) {
+            RandomStream stream(53);
+            for (Index item = 0; item < 20; ++item) {
+                const Isometry3d pose = somewhere(stream);
+                const auto found = find_board(view_of(corners, lens, pose), lens);
+                ASSERT_TRUE(found);
+                EXPECT_LT((found->matrix() - pose.matrix()).norm(), 1e-8);
+            }
+        }
+    }
+}
+
+TEST(BoardPose, NeedsFourCornersNotInLine) {
+    const BoardView view =
+        view_of(chessboard(4, 2, 0.04), pinhole, Isometry3d(Eigen::Translation3d(0, 0, 1)));
+    const BoardView row{{view.corners.begin(), view.corners.begin() + 4},
+                        {view.pixels.begin(), view.pixels.begin() + 4}};
+    EXPECT_FALSE(find_board(row, pinhole));
+    const BoardView three{{view.corners.begin() + 2, view.corners.begin() + 5},
+                          {view.pixels.begin() + 2, view.pixels.begin() + 5}};
+    EXPECT_FALSE(find_board(three, pinhole));
+}
+
+std::vector<BoardView> several_views(const Intrinsics& lens, Index count) {
+    RandomStream stream(54);
+    std::vector<BoardView> views;
+    for (Index k = 0; k < count; ++k) {
+        views.push_back(view_of(chessboard(8, 6, 0.03), lens, somewhere(stream)));
+    }
+    return views;
+}
+
+TEST(Intrinsics, FollowFromViewsAndNothingElse) {
+    for (const Intrinsics& lens : every_lens()) {
+        if (lens.coefficients.size() == 8) continue;  // k4 to k6 hardly differ from k1 to k3
+        SCOPED_TRACE(lens.coefficients.size());
+        const Intrinsics nothing = lens.with(VectorXd::Zero(lens.values().size()));
+        const std::vector<bool> unknown(nothing.names().size(), false);
+        const auto found = find_intrinsics(several_views(lens, 10), nothing, unknown, {});
+        ASSERT_TRUE(found);
+        EXPECT_LT((found->values() - lens.values()).cwiseAbs().maxCoeff(), 1e-6);
+    }
+}
+
+TEST(Intrinsics, DoNotFollowFromOneViewWithoutTheImagesMiddle) {
+    const Intrinsics nothing = pinhole.with(VectorXd::Zero(4));
+    EXPECT_FALSE(find_intrinsics({}, nothing, {false, false, false, false}, {}));
+    EXPECT_TRUE(find_intrinsics(several_views(pinhole, 1), nothing, {false, false, false, false},
+                                Vector2d(1310, 940)));
+}
+
+TEST(CameraSensor, SeesCornersBeforeItWithinItsImageFromTheFront) {
+    CameraSetup setup = fixed_camera();
+    setup.intrinsics = pinhole;
+    setup.known_place = Isometry3d::Identity();
+    setup.corners = chessboard(2, 2, 0.1);
+    const auto seen = [&](const Isometry3d& pose) -> Eigen::Array<bool, Eigen::Dynamic, 1> {
+        return CameraSensor(setup).view_clearances(pose, VectorXd()).array() >= 0;
+    };
+    const Isometry3d ahead(Eigen::Translation3d(-0.05, -0.05, 1));
+    EXPECT_TRUE(seen(ahead).all());
+    EXPECT_FALSE(seen(Isometry3d(Eigen::Translation3d(-0.05, -0.05, -1))).any());  // behind it
+    const Isometry3d at_edge(Eigen::Translation3d(0.45, -0.05, 1));  // u 1199.5 and 1320.5
+    EXPECT_EQ(seen(at_edge).count(), 2);
+    const Isometry3d turned = ahead * Eigen::Translation3d(0, 0.1, 0) *
+                              Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX());
+    EXPECT_FALSE(seen(turned).any());  // its back
+    setup.view.is_front_plus_z = true;
+    EXPECT_TRUE(seen(turned).all());
+    setup.view.is_front_plus_z = false;
+    const auto leaning = [&](double angle) {
+        return ahead * Eigen::AngleAxisd(angle, Vector3d::UnitX());
+    };
+    EXPECT_TRUE(seen(leaning(0.95)).all());
+    EXPECT_FALSE(seen(leaning(1.2)).any());
+}
+
+TEST(CameraSensor, IsPlannedWhereItSeesEnoughCorners) {
+    CameraSetup setup = fixed_camera();
+    setup.corners = chessboard(6, 4, 0.06);
+    setup.view.least_corners = 10;
+    const Campaign campaign = before_camera(tracked_campaign(fanuc()), setup);
+    const Constraints constraints(campaign, campaign.cell);
+    const Pool pool = make_pool(constraints, 3000, 1);
+    ASSERT_GT(pool.configurations.rows(), 20);
+    ASSERT_LT(pool.configurations.rows(), 1500);
+    const CameraSensor& sensor = dynamic_cast<const CameraSensor&>(*campaign.sensor);
+    Index parts = 0;
+    for (Index i = 0; i < pool.configurations.rows(); ++i) {
+        const Isometry3d flange =
+            world_from_flange(campaign, campaign.nominal, pool.configurations.row(i).transpose());
+        const Isometry3d board = sensor.camera_from_board(flange, campaign.nominal.sensor);
+        EXPECT_GE(pool.is_seen.row(i).count(), 10);
+        parts += pool.is_seen.row(i).all() ? 0 : 1;
+        for (const Index k : targets_seen(pool.is_seen.row(i))) {
+            const Vector3d corner = board * setup.corners[static_cast<std::size_t>(k)];
+            EXPECT_GT(corner.z(), 0);
+            const Vector2d place = project(setup.intrinsics, corner);
+            EXPECT_TRUE((place.array() >= 0).all() && place.x() <= 1280 && place.y() <= 960);
+            EXPECT_GT(board.linear().col(2).dot(corner), 0) << "its back";
+        }
+    }
+    EXPECT_GT(parts, 0) << "poses may show a part of the board";
+    EXPECT_GT(pool.rejections[static_cast<std::size_t>(Constraint::View)].in_all, 1000);
+}
+
+TEST(CameraSensor, IsNotPlannedWhereNobodyKnowsWhatItSees) {
+    Campaign campaign = before_camera(tracked_campaign(fanuc()), fixed_camera());
+    campaign.has_nominal_targets = false;
+    EXPECT_THROW(Constraints(campaign, campaign.cell), InputError);
+    EXPECT_NO_THROW(Constraints(campaign, campaign.cell, false));
+}
+
+TEST(CameraSensor, HasTheDerivativeByTheSizeOfItsBoard) {
+    for (CameraSetup setup : {fixed_camera(), camera_on_flange()}) {
+        setup.is_scale_unknown = true;
+        const CameraSensor sensor(setup);
+        Isometry3d place(Eigen::AngleAxisd(0.4, Vector3d(1, -2, 0.5).normalized()));
+        place.translation() = Vector3d(0.1, -0.05, 0.2);
+        Isometry3d flange(Eigen::Translation3d(0.1, 0.2, 1.5) *
+                          Eigen::AngleAxisd(0.3, Vector3d::UnitX()));
+        if (setup.is_on_flange) flange = flange.inverse();
+        VectorXd unknowns = sensor.unknowns(place, setup.intrinsics);
+        unknowns[unknowns.size() - 1] = 0.02;
+        RowMatrixXd J(sensor.row_count(), unknowns.size());
+        sensor.differentiate(flange, TwistMatrix(6, 0), unknowns, J);
+        expect_is_jacobian(
+            J, [&](const VectorXd& x) { return sensor.predict(flange, x); }, unknowns);
+        EXPECT_EQ(sensor.unknown_names().back(), "board.scale");
+        EXPECT_EQ(sensor.unknown_units().back(), &plain_units);
+    }
+}
+
+TEST(CameraSensor, NamesUnknownsWithTheirUnits) {
+    const CameraSensor sensor(camera_on_flange());
+    EXPECT_EQ(
+        sensor.unknown_names(),
+        (std::vector<std::string>{"camera.x", "camera.y", "camera.z", "camera.rx", "camera.ry",
+                                  "camera.rz", "camera.fx", "camera.fy", "camera.cx", "camera.k1",
+                                  "camera.k2", "camera.k3", "camera.k4"}));
+    const auto units = sensor.unknown_units();
+    EXPECT_EQ(units[2], &length_units);
+    EXPECT_EQ(units[3], &angle_units);
+    EXPECT_EQ(units[8], &pixel_units);
+    EXPECT_EQ(units[9], &plain_units);
+    EXPECT_EQ(sensor.units(true).error, "px");
+}
+
+TEST(CameraSensor, RefusesWhatIsNoCamera) {
+    const auto refuses = [](const auto& change) {
+        CameraSetup setup = fixed_camera();
+        change(setup);
+        EXPECT_THROW(CameraSensor{setup}, InputError);
+    };
+    refuses([](CameraSetup& s) { s.corners.resize(3); });
+    refuses([](CameraSetup& s) { s.corners = chessboard(5, 1, 0.1); });
+    refuses([](CameraSetup& s) { s.sigma = 0; });
+    refuses([](CameraSetup& s) { s.intrinsics.fx = 0; });
+    refuses([](CameraSetup& s) { s.intrinsics.cx = NAN; });
+    refuses([](CameraSetup& s) { s.intrinsics.coefficients.resize(6); });
+    refuses([](CameraSetup& s) { s.is_known = {true, false}; });
+    refuses([](CameraSetup& s) { s.corners[1].x() = INFINITY; });
+}
+
+}  // namespace
+}  // namespace posewise

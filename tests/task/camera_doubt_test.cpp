@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/task/doubts.hpp"
+#include "support/robots.hpp"
+#include "support/sensors.hpp"
+
+namespace posewise {
+namespace {
+
+using namespace testing;
+
+struct Seen30 {
+    Campaign campaign;
+    Measurements measured;
+};
+
+/// 30 views by a fixed camera, the robot as stated to its usual errors.
+Seen30 views_of(CameraSetup setup) {
+    setup.corners = chessboard(6, 4, 0.05);
+    setup.columns = 6;
+    Campaign campaign = before_camera(tracked_campaign(fanuc()), setup);
+    Simulation simulated =
+        simulate(campaign, {.pose_count = 30, .repeats = 1, .truth_seed = 2, .seed = 7});
+    return {std::move(campaign), std::move(simulated.measurements)};
+}
+
+const Seen30& good() {
+    static const Seen30 views = views_of(fixed_camera());
+    return views;
+}
+
+Parameters registered(const Campaign& campaign, const Measurements& measured) {
+    return register_base_and_targets(campaign, measured).parameters;
+}
+
+Campaign with_setup(const Campaign& campaign, const CameraSetup& setup) {
+    Campaign changed = campaign;
+    changed.sensor = std::make_shared<CameraSensor>(setup);
+    return changed;
+}
+
+CameraSetup setup_of(const Campaign& campaign) {
+    return dynamic_cast<const CameraSensor&>(*campaign.sensor).setup();
+}
+
+TEST(CameraDoubt, IsNoneOfWhatIsRight) {
+    const auto& [campaign, measured] = good();
+    EXPECT_FALSE(find_camera_doubt(campaign, measured, registered(campaign, measured)));
+    EXPECT_FALSE(find_misfit(campaign, measured, registered(campaign, measured)));
+}
+
+TEST(CameraDoubt, NamesTheSquaresThatFit) {
+    const auto& [campaign, measured] = good();
+    CameraSetup wrong = setup_of(campaign);
+    for (Vector3d& corner : wrong.corners) corner *= 25.4 / 25;
+    const Campaign stated = with_setup(campaign, wrong);
+    const auto doubt = find_camera_doubt(stated, measured, registered(stated, measured));
+    ASSERT_TRUE(doubt);
+    EXPECT_NEAR(doubt->board_factor, 25 / 25.4, 2e-3);
+    EXPECT_NEAR(doubt->square, 0.0508, 1e-12);
+    EXPECT_LT(doubt->scaled_misfit, doubt->misfit);
+}
+
+TEST(CameraDoubt, NamesAPrincipalPointOfAnotherImage) {
+    const auto& [campaign, measured] = good();
+    CameraSetup turned = setup_of(campaign);
+    std::swap(turned.intrinsics.cx, turned.intrinsics.cy);
+    turned.view.image = Vector2d(1280, 960);
+    turned.intrinsics.cx = 200;
+    const Campaign stated = with_setup(campaign, turned);
+    const auto doubt = find_camera_doubt(stated, measured, registered(stated, measured));
+    ASSERT_TRUE(doubt);
+    ASSERT_TRUE(doubt->principal_point);
+    EXPECT_EQ((*doubt->principal_point)[0], 200);
+    EXPECT_EQ(doubt->middle[0], 640);
+    EXPECT_TRUE(doubt->is_of_image);
+}
+
+TEST(CameraDoubt, NoticesMirroredNumbers) {
+    const auto& [campaign, measured] = good();
+    Measurements mirrored = measured;
+    for (Index k = 0; k < 24; ++k) {
+        const Index other = k - k % 6 + 5 - k % 6;
+        mirrored.observations.middleCols(2 * k, 2) = measured.observations.middleCols(2 * other, 2);
+        mirrored.is_seen.col(k) = measured.is_seen.col(other);
+    }
+    const auto doubt = find_camera_doubt(campaign, mirrored, registered(campaign, mirrored));
+    ASSERT_TRUE(doubt);
+    EXPECT_TRUE(doubt->is_seen_from_back);
+}
+
+TEST(Misfit, NamesImageAxesThatWereExchanged) {
+    const auto& [campaign, measured] = good();
+    Measurements swapped = measured;
+    for (Index k = 0; k < 24; ++k) {
+        swapped.observations.col(2 * k) = measured.observations.col(2 * k + 1);
+        swapped.observations.col(2 * k + 1) = measured.observations.col(2 * k);
+    }
+    const auto misfit = find_misfit(campaign, swapped, registered(campaign, swapped));
+    ASSERT_TRUE(misfit);
+    ASSERT_TRUE(misfit->reading);
+    EXPECT_EQ(misfit->reading->words, "v, u in place of u, v");
+    EXPECT_NE(describe_misfit(campaign, *misfit).find(" px"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace posewise
