@@ -224,14 +224,13 @@ void CameraSensor::covariance(const Isometry3d&, const VectorXd&,
     covariance.diagonal().setConstant(sigma * sigma);
 }
 
-VectorXd CameraSensor::view_clearances(const Isometry3d& world_from_flange,
-                                       const VectorXd& unknowns) const {
+void CameraSensor::view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                                   Eigen::Ref<VectorXd> clearances) const {
     const Isometry3d board = camera_from_board(world_from_flange, unknowns);
-    const Intrinsics camera = intrinsics(unknowns);
-    const double widest =
-        unknown_intrinsics_.empty() ? widest_ : detail::widest_tangent(detail::lens_of(camera));
+    const detail::Lens lens =
+        lens_with(setup_.intrinsics, widest_, unknown_intrinsics_, unknowns, place_count());
+    const double widest = unknown_intrinsics_.empty() ? widest_ : detail::widest_tangent(lens);
     const double factor = board_factor(unknowns);
-    VectorXd clearances(target_count());
     for (Index k = 0; k < target_count(); ++k) {
         const Vector3d p = board * (factor * setup_.corners[static_cast<std::size_t>(k)]);
         const double to_side = std::atan2(p.head<2>().norm(), p.z());
@@ -242,14 +241,14 @@ VectorXd CameraSensor::view_clearances(const Isometry3d& world_from_flange,
             least = std::min(least, setup_.view.most_tilt - tilt);
         }
         if (setup_.view.image && least > 0) {
-            const Vector2d place = project(camera, p);
-            const Vector2d focal(camera.fx, camera.fy);
+            const Vector2d place = detail::place_of(lens, p);
+            const Vector2d focal(lens.values[0], lens.values[1]);
+            const Vector2d image = detail::kpx_per_px * *setup_.view.image;
             least = std::min({least, place.cwiseQuotient(focal).minCoeff(),
-                              (*setup_.view.image - place).cwiseQuotient(focal).minCoeff()});
+                              (image - place).cwiseQuotient(focal).minCoeff()});
         }
         clearances[k] = least;
     }
-    return clearances;
 }
 
 SensorWords CameraSensor::words() const {

@@ -271,8 +271,9 @@ void Constraints::check_sight(const Posture& posture, ConstraintReport& report) 
 }
 
 void Constraints::check_view(const Posture& posture, ConstraintReport& report) const {
-    VectorXd clearances =
-        view_->view_clearances(tracker_from_base_ * posture.base_from_flange, view_unknowns_);
+    VectorXd clearances(view_->target_count());
+    view_->view_clearances(tracker_from_base_ * posture.base_from_flange, view_unknowns_,
+                           clearances);
     report.is_seen = report.is_seen && clearances.transpose().array() >= -pose_rounding;
     const Index needed = std::min(view_->least_in_view(), clearances.size());
     const auto nth = clearances.begin() + needed - 1;

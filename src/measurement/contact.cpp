@@ -137,10 +137,11 @@ ShownPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, 
     constexpr Index drawn_for_each = 64;
     const RowMatrixXd drawn = random_configurations(campaign.robot, drawn_for_each * count, seed);
     const Sensor& sensor = *campaign.sensor;
+    VectorXd clearances(sensor.target_count());
     std::vector<std::pair<double, Index>> hidden;  // by how much, 0: it is in view
     for (Index i = 0; i < drawn.rows(); ++i) {
         const Isometry3d flange = world_from_flange(campaign, parameters, drawn.row(i).transpose());
-        VectorXd clearances = sensor.view_clearances(flange, parameters.sensor);
+        sensor.view_clearances(flange, parameters.sensor, clearances);
         const auto least = clearances.begin() + sensor.least_in_view() - 1;
         std::nth_element(clearances.begin(), least, clearances.end(), std::greater<>());
         hidden.emplace_back(std::max(0.0, -*least), i);

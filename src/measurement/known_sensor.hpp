@@ -34,8 +34,9 @@ class KnownSensor final : public Sensor {
     bool is_angle(Index row) const override { return sensor_->is_angle(row); }
     bool has_pixels() const override { return sensor_->has_pixels(); }
     bool has_view() const override { return sensor_->has_view(); }
-    VectorXd view_clearances(const Isometry3d& world_from_flange, const VectorXd&) const override {
-        return sensor_->view_clearances(world_from_flange, unknowns_);
+    void view_clearances(const Isometry3d& world_from_flange, const VectorXd&,
+                         Eigen::Ref<VectorXd> clearances) const override {
+        sensor_->view_clearances(world_from_flange, unknowns_, clearances);
     }
     Index least_in_view() const override { return sensor_->least_in_view(); }
     bool is_distance(Index row) const override { return sensor_->is_distance(row); }

@@ -144,6 +144,8 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
     RowMatrixXd effect(rows, 6);
     TwistMatrix twists(6, 6);
     VectorXd motion(6);
+    VectorXd clearances(sensor.target_count());
+    SeenTargets seen(sensor.target_count());
     const bool has_contacts = sensor.has_contacts();
     Measurements measurements;
     measurements.configurations = configurations;
@@ -181,7 +183,12 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
             sensor.covariance(flange, truth.sensor, covariance);
             detail::cholesky_factor(covariance, noise_factor);
         }
-        measurements.is_seen.middleRows(i * repeats, repeats).rowwise() = is_seen.row(i);
+        seen = is_seen.row(i);
+        if (sensor.has_view()) {
+            sensor.view_clearances(flange, truth.sensor, clearances);
+            seen = seen && clearances.transpose().array() >= 0;
+        }
+        measurements.is_seen.middleRows(i * repeats, repeats).rowwise() = seen;
         for (Index k = 0; k < repeats; ++k) {
             detail::fill_normals(stream, drawn);
             noise.noalias() = noise_factor * drawn;

@@ -187,7 +187,9 @@ TEST(CameraSensor, SeesCornersBeforeItWithinItsImageFromTheFront) {
     setup.known_place = Isometry3d::Identity();
     setup.corners = chessboard(2, 2, 0.1);
     const auto seen = [&](const Isometry3d& pose) -> Eigen::Array<bool, Eigen::Dynamic, 1> {
-        return CameraSensor(setup).view_clearances(pose, VectorXd()).array() >= 0;
+        VectorXd clearances(4);
+        CameraSensor(setup).view_clearances(pose, VectorXd(), clearances);
+        return clearances.array() >= 0;
     };
     const Isometry3d ahead(Eigen::Translation3d(-0.05, -0.05, 1));
     EXPECT_TRUE(seen(ahead).all());

@@ -120,8 +120,8 @@ class CameraSensor final : public Sensor {
                     Eigen::Ref<MatrixXd> covariance) const override;
     bool has_constant_covariance() const override { return true; }
     bool has_view() const override { return true; }
-    VectorXd view_clearances(const Isometry3d& world_from_flange,
-                             const VectorXd& unknowns) const override;
+    void view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                         Eigen::Ref<VectorXd> clearances) const override;
     Index least_in_view() const override { return setup_.view.least_corners; }
     std::vector<NoiseNumber> noise_numbers() const override {
         return {{"sigma_px", {setup_.sigma}}};

@@ -124,7 +124,8 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
 
 /// As above, where each configuration shows some targets (m x targets). For contacts it shows one:
 /// the joints are moved from `configurations` to where the robot touches it, and all readings are
-/// 0. Throws InputError if they cannot be.
+/// 0. A sensor with has_view() misses those that are out of sight of the true robot. Throws
+/// InputError if they cannot be.
 Measurements simulate_measurements(const Campaign& campaign, const Parameters& truth,
                                    const RowMatrixXd& configurations, const Seen& is_seen,
                                    Index repeats, std::uint64_t seed);

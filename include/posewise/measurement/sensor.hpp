@@ -222,7 +222,9 @@ class Sensor {
     virtual bool has_view() const { return false; }
     /// For a sensor with a view: how far each target is from being out of sight, rad; negative: it
     /// is. One value a target.
-    virtual VectorXd view_clearances(const Isometry3d&, const VectorXd&) const { return {}; }
+    virtual void view_clearances(const Isometry3d& /*world_from_flange*/,
+                                 const VectorXd& /*unknowns*/,
+                                 Eigen::Ref<VectorXd> /*clearances*/) const {}
     /// How many targets a pose must show for a sensor with a view.
     virtual Index least_in_view() const { return 1; }
     /// Index in targets() of the point that a target belongs to.

@@ -316,13 +316,15 @@ class RowReader {
         return corner;
     }
 
-    /// To a pixel. `first`: the field's index among the observed numbers.
+    /// To a pixel, or as far as its noise takes a corner. `first`: the field's index among the
+    /// observed numbers.
     void check_in_image(const Vector2d& place, std::size_t first) const {
         if (camera_ == nullptr || !camera_->setup().view.image) return;
         const auto& image = camera_->setup().view.image;
         const Vector2d px = 1e3 * place;
+        const double margin = std::max(1.0, 5 * camera_->setup().sigma);
         const auto is_inside = [&](double value, double size) {
-            return value >= -1 && value <= size;
+            return value >= -margin && value <= size + margin;
         };
         for (Index axis = 0; axis < 2; ++axis) {
             if (is_inside(px[axis], (*image)[axis])) continue;
