@@ -15,7 +15,8 @@ inline constexpr std::uint64_t configuration_seed =
 /// of a file's numbers: a target on the last joint's axis but for an angle of 3.1416.
 inline constexpr double least_visible = 1e-4;
 
-/// So many random poses, of a camera those that show it the board. Of a probe that touches each touches one thing, where they can reach all.
+/// So many random poses, of a camera those that show it the board. Of a probe that touches each
+/// touches one thing, where they can reach all.
 ShownPoses poses_to_judge(const Campaign& campaign, Index count);
 
 /// Expected errors by their kinds alone: what one of them is stated as, or how far joints' zeros
