@@ -100,8 +100,8 @@ def by_posewise(program, joints, views, folder):
     text = text[:start[0]] + "    distortion: {model: brown_conrady, coefficients: [0, 0, 0, 0, 0]}\n" + text[start[1]:]
     text = text[:text.index("  # Only to plan")]  # no place, no base: from nothing
     (folder / "c.yaml").write_text(text)
-    subprocess.run([program, "calibrate", folder / "c.yaml", folder / "m.csv", "--out", folder / "e.json"],
-                   check=True, capture_output=True)
+    subprocess.run([program, "calibrate", folder / "c.yaml", "-m", folder / "m.csv", "--out", folder / "e.json"],
+                   check=True, stdout=subprocess.DEVNULL)
     unknowns = json.loads((folder / "e.json").read_text())["sensor"]
     value = lambda name: unknowns["camera." + name]
     found = transform([value(f"r{a}_rad") for a in "xyz"], [value(f"{a}_m") for a in "xyz"])
