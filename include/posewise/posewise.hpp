@@ -11,6 +11,7 @@
 #include "posewise/io/result_files.hpp"
 #include "posewise/io/robot_files.hpp"
 #include "posewise/io/robot_programs.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/report/reports.hpp"
