@@ -66,9 +66,11 @@ void add_deviation(std::vector<std::string>& row, double deviation, const Amount
 
 Table metrics_table(const std::vector<std::pair<std::string, Metrics>>& columns) {
     Table table;
-    table.header = {"error/mm"};
+    const auto kinds = list_metric_rows(columns.front().second);
+    const bool state_units = kinds.front().first.ends_with("/px");
+    table.header = {state_units ? "error" : "error/mm"};
     for (const auto& [name, metrics] : columns) table.header.push_back(name);
-    for (const auto& [name, value] : list_metric_rows(columns.front().second)) {
+    for (const auto& [name, value] : kinds) {
         std::vector<std::string> row{name};
         for (const auto& [unused, metrics] : columns) {
             row.push_back(metrics.point_count > 0 ? format_mm(value(metrics)) : "-");

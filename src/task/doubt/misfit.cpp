@@ -60,7 +60,9 @@ std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& 
     const Parameters& at = is_stated ? campaign.nominal : registered;
     misfit.expected = has_pixels ? detail::largest_left_over(campaign, at, measured, true)
                                  : detail::expected_distance(campaign, measured);
-    if (misfit.distance <= doubtful_errors * misfit.expected &&
+    // Corners by the hundred take long to try, and wrong ones miss by far.
+    const double doubtful = has_pixels ? detail::credible_errors : doubtful_errors;
+    if (misfit.distance <= doubtful * misfit.expected &&
         !are_orientations_off(campaign, residuals)) {
         return std::nullopt;
     }

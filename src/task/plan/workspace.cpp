@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "measurement/contact.hpp"
 #include "model/sampling.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/constraints.hpp"
@@ -40,8 +41,11 @@ std::optional<ExpectedError> expected_workspace_error(const Campaign& campaign,
     constexpr Index count = 200;
     if (campaign.sensor->has_contacts()) return std::nullopt;
     try {
+        // Where a camera does not see the board its pixels say nothing.
         const RowMatrixXd configurations =
-            workspace_configurations(campaign, estimate.parameters, count, 1);
+            campaign.sensor->has_view()
+                ? viewed_poses(campaign, estimate.parameters, count, 1).configurations
+                : workspace_configurations(campaign, estimate.parameters, count, 1);
         return predict_errors(campaign, estimate, configurations).front().overall;
     } catch (const InputError&) {
         return std::nullopt;  // limits are missing, or the cell leaves no room
