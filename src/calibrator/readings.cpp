@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "core/parallel.hpp"
 #include "core/statistics.hpp"
@@ -107,11 +108,35 @@ void fit(std::vector<FittedReading>& readings, std::size_t count, const Campaign
 
 Index changes_of(const FittedReading& reading) { return count_changes(reading.changes); }
 
+/// A dozen corners tell as well as all whether an image is of a board; which they are fits no row
+/// and no column of it.
+Measurements with_few_corners(const Sensor& sensor, Measurements measurements) {
+    constexpr Index enough = 12;
+    const Index count = measurements.is_seen.cols();
+    if (!sensor.has_pixels() || count <= enough) return measurements;
+    std::vector<Index> order(static_cast<std::size_t>(count));
+    std::iota(order.begin(), order.end(), Index{0});
+    const auto place = [](Index k) {
+        return std::fmod(static_cast<double>(k) * (std::numbers::phi - 1), 1);
+    };
+    std::ranges::sort(order, {}, place);
+    for (Index sample = 0; sample < measurements.is_seen.rows(); ++sample) {
+        Index kept = 0;
+        for (const Index k : order) {
+            if (measurements.is_seen(sample, k) && ++kept > enough) {
+                measurements.is_seen(sample, k) = false;
+            }
+        }
+    }
+    return measurements;
+}
+
 }  // namespace
 
 FittedReadings fit_readings(const Campaign& campaign, const Measurements& measurements,
                             Index most_configurations) {
-    const Measurements thinned = thin_out(measurements, most_configurations);
+    const Measurements thinned =
+        with_few_corners(*campaign.sensor, thin_out(measurements, most_configurations));
     // What is wrong with the measurements themselves is said once, of the robot as stated.
     FittedReadings fitted{{}, register_roughly(campaign, thinned).undetermined};
     if (!fitted.undetermined.empty()) return fitted;
