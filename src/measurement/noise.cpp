@@ -266,6 +266,7 @@ void PoseNoise::add_effects(const FlangeMotion& motion, const VectorXd& sensor_u
 
 void raise_to_rounding(MatrixXd& covariance, double trace) {
     constexpr double rounding = 1e-14;
+    if (covariance.rows() == 0) return;  // nothing is seen
     if (covariance.diagonal().minCoeff() > rounding * trace) return;
     covariance.diagonal().array() += rounding * trace;
 }
