@@ -78,6 +78,13 @@ TEST(EverySensor, TakesNoMemoryForEachConfiguration) {
         if (campaign.sensor->has_contacts()) continue;
         campaign.base_is_known.fill(false);  // what is known of it is left out with a copy
         SCOPED_TRACE(name);
+        if (const auto* camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get())) {
+            CameraSetup setup = camera->setup();  // Eigen has memory of its own for larger products
+            setup.corners = chessboard(3, 2, 0.1);
+            setup.view.image.reset();  // nor do views differ in what they show
+            setup.view.most_tilt = 4;
+            campaign.sensor = std::make_shared<CameraSensor>(setup);
+        }
         const Asked few = asked_with(campaign, 12);
         const Asked many = asked_with(campaign, 48);
         EXPECT_EQ(few.simulating, many.simulating);

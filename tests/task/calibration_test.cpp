@@ -157,6 +157,7 @@ TEST(Calibrate, PredictsLengthsAndAnglesOfFullPoses) {
     for (const auto& [name, campaign] : testing::campaigns_of_every_sensor(testing::ur_type())) {
         SCOPED_TRACE(name);
         const Sensor& sensor = *campaign.sensor;
+        if (sensor.has_pixels()) continue;  // they follow from a motion of the flange
         Estimate estimate;
         estimate.parameters = campaign.nominal;
         const Index size = parameter_count(campaign);
