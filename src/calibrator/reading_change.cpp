@@ -10,6 +10,7 @@
 
 #include "core/format.hpp"
 #include "length_units.hpp"
+#include "measurement/camera_model.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/sensors.hpp"
@@ -101,7 +102,7 @@ void change_image(const ReadingChange& change, const Sensor& sensor, RowMatrixXd
     if (camera == nullptr) return;
     const Intrinsics& stated = camera->setup().intrinsics;
     const Vector2d size =
-        1e-3 * camera->setup().view.image.value_or(2 * Vector2d(stated.cx, stated.cy));
+        kpx_per_px * camera->setup().view.image.value_or(2 * Vector2d(stated.cx, stated.cy));
     for (Index u = 0; u < observations.cols(); u += 2) {
         if (are_exchanged(change)) observations.col(u).swap(observations.col(u + 1));
         for (Index axis = 0; axis < 2; ++axis) {

@@ -119,12 +119,6 @@ Registration solve_linear(const Campaign& campaign, const ObservedPoints& observ
     return {found, confused.empty() ? "" : describe_shortage(campaign, means, confused)};
 }
 
-/// The points that base and targets are registered from; nothing if it begins at nominal values.
-std::optional<ObservedPoints> registered_points(const Campaign& campaign) {
-    if (base_parameter_count(campaign) < 6) return std::nullopt;
-    return campaign.sensor->observed_points();
-}
-
 /// Where the polish begins; the robot has no parameters.
 Registration find_start(const Campaign& campaign, const Measurements& measurements) {
     const Sensor& sensor = *campaign.sensor;
@@ -201,7 +195,8 @@ Index least_calibration_count(const Campaign& campaign, const StopSignal& stop) 
     }
     const Index least = std::max(least_pose_count(campaign, stop), campaign.fitted_pose_count);
     const Campaign nominal = with_robot(campaign, without_parameters(campaign.robot));
-    const std::optional<ObservedPoints> observed = registered_points(nominal);
+    if (base_parameter_count(nominal) < 6) return least;
+    const std::optional<ObservedPoints> observed = nominal.sensor->observed_points();
     if (!observed) return least;
     constexpr std::uint64_t seed = 20152;  // any: it only has to be the same every time
     const auto are_enough = [&](Index count) {

@@ -158,7 +158,7 @@ ViewEquations equations_of(const BoardView& view, const Intrinsics& intrinsics,
         const Vector3d turned = pose.linear() * view.corners[static_cast<std::size_t>(k)];
         differentiate_projection(lens, turned + pose.translation(), projection);
         equations.residuals.segment<2>(2 * k) =
-            1e-3 * view.pixels[static_cast<std::size_t>(k)] - projection.place;
+            kpx_per_px * view.pixels[static_cast<std::size_t>(k)] - projection.place;
         equations.by_pose.block<2, 3>(2 * k, 0) = -projection.by_point * cross_matrix(turned);
         equations.by_pose.block<2, 3>(2 * k, 3) = projection.by_point;
         equations.by_values.middleRows<2>(2 * k) = projection.by_values;
@@ -202,12 +202,13 @@ class Bundle {
   private:
     double squares_of(const Intrinsics& intrinsics, const std::vector<Isometry3d>& poses) const {
         if (!(intrinsics.fx > 0 && intrinsics.fy > 0)) return INFINITY;
+        const Lens lens = lens_of(intrinsics);
         double sum = 0;
         for (std::size_t i = 0; i < views_.size(); ++i) {
             for (std::size_t k = 0; k < views_[i].corners.size(); ++k) {
                 const Vector3d point = poses[i] * views_[i].corners[k];
                 if (point.z() <= 0) return INFINITY;
-                sum += (1e-3 * (views_[i].pixels[k] - project(intrinsics, point))).squaredNorm();
+                sum += (kpx_per_px * views_[i].pixels[k] - place_of(lens, point)).squaredNorm();
             }
         }
         return sum;
@@ -381,7 +382,7 @@ std::optional<Intrinsics> find_intrinsics(const std::vector<BoardView>& views,
         if (!pinhole) return std::nullopt;
         VectorXd values = start.values();
         for (Index k = 0; k < 4; ++k) {
-            if (!is_known[static_cast<std::size_t>(k)]) values[k] = 1e-3 * (*pinhole)[k];
+            if (!is_known[static_cast<std::size_t>(k)]) values[k] = kpx_per_px * (*pinhole)[k];
         }
         start = start.with(values);
     }

@@ -241,7 +241,7 @@ void Constraints::check_sight(const Posture& posture, ConstraintReport& report) 
     // Clearances of each target: range, azimuth, elevation, incidence, line, and the least of them.
     constexpr std::size_t first = static_cast<std::size_t>(Constraint::Range);
     constexpr std::size_t kinds = static_cast<std::size_t>(Constraint::VisibleTargets) + 1 - first;
-    std::array<std::vector<double>, kinds> clearances;
+    Eigen::Matrix<double, Eigen::Dynamic, kinds> clearances(count, kinds);
     for (std::size_t j = 0; j < count; ++j) {
         const Vector3d point = tracker_from_base_ * posture.targets[j];
         const double incidence =
@@ -258,15 +258,15 @@ void Constraints::check_sight(const Posture& posture, ConstraintReport& report) 
                                             infinity};
         of_target.back() = *std::min_element(of_target.begin(), of_target.end());
         report.is_seen[static_cast<Index>(j)] = of_target.back() >= -pose_rounding;
-        for (std::size_t k = 0; k < kinds; ++k) clearances[k].push_back(of_target[k]);
+        for (std::size_t k = 0; k < kinds; ++k) {
+            clearances(static_cast<Index>(j), static_cast<Index>(k)) = of_target[k];
+        }
     }
-    const auto needed =
-        static_cast<std::size_t>(sight.least_visible.value_or(static_cast<Index>(count)));
+    const Index needed = sight.least_visible.value_or(static_cast<Index>(count));
     if (needed == 0) return;
-    for (std::size_t k = 0; k < kinds; ++k) {  // the needed-th largest
-        const auto nth = clearances[k].begin() + static_cast<std::ptrdiff_t>(needed) - 1;
-        std::nth_element(clearances[k].begin(), nth, clearances[k].end(), std::greater<>());
-        report.clearance[first + k] = *nth;
+    for (std::size_t k = 0; k < kinds; ++k) {
+        report.clearance[first + k] =
+            detail::needed_clearance(clearances.col(static_cast<Index>(k)), needed);
     }
 }
 
@@ -275,10 +275,8 @@ void Constraints::check_view(const Posture& posture, ConstraintReport& report) c
     view_->view_clearances(tracker_from_base_ * posture.base_from_flange, view_unknowns_,
                            clearances);
     report.is_seen = report.is_seen && clearances.transpose().array() >= -pose_rounding;
-    const Index needed = std::min(view_->least_in_view(), clearances.size());
-    const auto nth = clearances.begin() + needed - 1;
-    std::nth_element(clearances.begin(), nth, clearances.end(), std::greater<>());
-    report.clearance[static_cast<std::size_t>(Constraint::View)] = *nth;
+    report.clearance[static_cast<std::size_t>(Constraint::View)] =
+        detail::needed_clearance(clearances, view_->least_in_view());
 }
 
 ConstraintReport Constraints::check(const VectorXd& q) const {

@@ -132,6 +132,12 @@ ShownPoses draw_poses(const Campaign& campaign, const Parameters& parameters, In
         campaign.sensor->words().key));
 }
 
+double needed_clearance(Eigen::Ref<VectorXd> clearances, Index needed) {
+    const auto nth = clearances.begin() + std::min(needed, clearances.size()) - 1;
+    std::nth_element(clearances.begin(), nth, clearances.end(), std::greater<>());
+    return *nth;
+}
+
 ShownPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, Index count,
                         std::uint64_t seed) {
     constexpr Index drawn_for_each = 64;
@@ -142,9 +148,8 @@ ShownPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, 
     for (Index i = 0; i < drawn.rows(); ++i) {
         const Isometry3d flange = world_from_flange(campaign, parameters, drawn.row(i).transpose());
         sensor.view_clearances(flange, parameters.sensor, clearances);
-        const auto least = clearances.begin() + sensor.least_in_view() - 1;
-        std::nth_element(clearances.begin(), least, clearances.end(), std::greater<>());
-        hidden.emplace_back(std::max(0.0, -*least), i);
+        const double clearance = needed_clearance(clearances, sensor.least_in_view());
+        hidden.emplace_back(std::max(0.0, -clearance), i);
     }
     std::ranges::sort(hidden);
     RowMatrixXd poses(count, drawn.cols());

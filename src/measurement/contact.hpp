@@ -37,6 +37,10 @@ ShownPoses draw_poses(const Campaign& campaign, const Parameters& parameters, In
 std::optional<ShownPoses> touching_poses(const Campaign& campaign, const Parameters& parameters,
                                          Index count, std::uint64_t seed);
 
+/// How far as many targets as are needed are from being out of sight: that largest of all
+/// clearances, or the least of fewer. Leaves them in another order.
+double needed_clearance(Eigen::Ref<VectorXd> clearances, Index needed);
+
 /// Of random_configurations() those that show a sensor with has_view() most of its
 /// targets, which are all taken as seen.
 ShownPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, Index count,

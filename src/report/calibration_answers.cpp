@@ -195,14 +195,11 @@ std::string describe_conditions(const Calibration& calibration) {
     std::string text;
     for (const ConditionTrend& condition : calibration.condition_trends) {
         const OrderSlope& worst = condition.trend.worst();
+        const AmountUnits& units = calibration.campaign.sensor->units(worst.is_angle);
         text += fmt::format("; by the {} ({} {}): {} changes by {} per {}, give or take {}, p = {}",
                             condition.name, format_short(condition.range, 3), condition.unit,
-                            worst.axis,
-                            format_error(worst.change / condition.range,
-                                         calibration.campaign.sensor->units(worst.is_angle)),
-                            condition.unit,
-                            format_error(worst.detectable / condition.range,
-                                         calibration.campaign.sensor->units(worst.is_angle)),
+                            worst.axis, format_error(worst.change / condition.range, units),
+                            condition.unit, format_error(worst.detectable / condition.range, units),
                             format_short(worst.probability, 2));
     }
     return text;
@@ -212,17 +209,17 @@ std::string describe_order(const Calibration& calibration) {
     if (!calibration.order_trend) return "not known: too few configurations";
     const OrderTrend& trend = *calibration.order_trend;
     const OrderSlope& worst = trend.worst();
+    const AmountUnits& units = calibration.campaign.sensor->units(worst.is_angle);
     const std::string size = fmt::format(
         "{} changes by {} from first to last, p = {}{}", worst.axis,
-        format_error(worst.change, calibration.campaign.sensor->units(worst.is_angle)),
-        format_short(worst.probability, 2),
+        format_error(worst.change, units), format_short(worst.probability, 2),
         trend.is_beside_joints ? ""
                                : "; the order of the poses themselves could look like this, too");
     if (trend.is_plain()) {
         return fmt::format(
             "yes, residuals follow the order of the measurements: {}; the first "
             "tenth is off the rest by {}",
-            size, format_error(worst.early, calibration.campaign.sensor->units(worst.is_angle)));
+            size, format_error(worst.early, units));
     }
     if (trend.is_possible()) return "perhaps: " + size;
     double detectable = 0;
@@ -234,10 +231,9 @@ std::string describe_order(const Calibration& calibration) {
     }
     const Metrics& fit = calibration.estimate.fit;
     const double left = worst.is_angle ? fit.orientation_rms : fit.rms();
-    return fmt::format(
-        "{}; a drift of {} from first to last would have been seen",
-        detectable > left ? "none so large that it could be seen" : "none seen",
-        format_error(detectable, calibration.campaign.sensor->units(worst.is_angle)));
+    return fmt::format("{}; a drift of {} from first to last would have been seen",
+                       detectable > left ? "none so large that it could be seen" : "none seen",
+                       format_error(detectable, units));
 }
 
 /// More configurations lower the parameters' variance alone, as 1 / n.

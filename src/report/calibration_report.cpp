@@ -160,12 +160,8 @@ std::string describe_expected(const Calibration& calibration) {
         const auto where =
             fmt::format("at the {} to predict",
                         detail::count_of(static_cast<Index>(prediction.each.size()), "pose"));
-        text += describe(prediction.overall, where,
-                         calibration.campaign.sensor->units(prediction.is_angle)) +
-                ", 95 % are below " +
-                detail::format_error(prediction.overall.percentile95,
-                                     calibration.campaign.sensor->units(prediction.is_angle)) +
-                '\n';
+        text += describe(prediction.overall, where, *prediction.units) + ", 95 % are below " +
+                detail::format_error(prediction.overall.percentile95, *prediction.units) + '\n';
     }
     return text + describe(calibration.predicted_beyond, "to predict");
 }

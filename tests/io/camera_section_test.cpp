@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "campaign_text.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/measurement/camera_sensor.hpp"
@@ -13,14 +14,7 @@ namespace {
 using testing::input_error_of;
 using testing::replaced;
 using testing::TemporaryFolder;
-
-const std::string head =
-    "name: arm\n"
-    "robot:\n"
-    "  joints:\n"
-    "    q1: {limits_deg: [-170, 170]}\n"
-    "    q2: {limits_deg: [-90, 90]}\n"
-    "  elements: [Rz q1, Tx 400 mm, Ry q2, Tx 300 mm]\n";
+using testing::two_joint_arm;
 
 const std::string camera =
     "sensor:\n"
@@ -34,7 +28,9 @@ const std::string camera =
     "  place: {position_mm: [10, 20, 30], rpy_deg: [0, 0, 90]}\n"
     "  view: {most_tilt_deg: 45, least_corners: 5, front: +z}\n";
 
-CampaignFile read(const std::string& text) { return parse_campaign(head + text, "c.yaml"); }
+CampaignFile read(const std::string& text) {
+    return parse_campaign(two_joint_arm + text, "c.yaml");
+}
 
 const CameraSetup& setup_of(const Campaign& campaign) {
     return dynamic_cast<const CameraSensor&>(*campaign.sensor).setup();
@@ -116,7 +112,7 @@ CampaignFile read_with_file(const std::string& text, const std::string& change =
     const TemporaryFolder folder;
     folder.write("camera.yaml", text);
     return read_campaign(folder.write(
-        "c.yaml", head + "sensor: {kind: camera, camera: fixed, sigma_px: 0.3, " + change +
+        "c.yaml", two_joint_arm + "sensor: {kind: camera, camera: fixed, sigma_px: 0.3, " + change +
                       "intrinsics: {file: camera.yaml},\n"
                       "  board: {columns: 3, rows: 2, square_mm: 25}}\n"));
 }

@@ -6,6 +6,15 @@
 
 namespace posewise::testing {
 
+/// Two turning joints, for campaigns whose sensor matters.
+inline const std::string two_joint_arm =
+    "name: arm\n"
+    "robot:\n"
+    "  joints:\n"
+    "    q1: {limits_deg: [-170, 170]}\n"
+    "    q2: {limits_deg: [-90, 90]}\n"
+    "  elements: [Rz q1, Tx 400 mm, Ry q2, Tx 300 mm]\n";
+
 /// A small campaign file with everything in it: one sliding and two turning joints.
 inline const std::string campaign_text = R"(name: crane
 robot:

@@ -3,6 +3,7 @@
 #include <array>
 #include <numbers>
 
+#include "campaign_text.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/sensors.hpp"
@@ -17,14 +18,8 @@ using testing::input_error_of;
 using testing::replaced;
 using testing::TemporaryFolder;
 
-const std::string head =
-    "name: arm\n"
-    "robot:\n"
-    "  joints:\n"
-    "    q1: {limits_deg: [-170, 170]}\n"
-    "    q2: {limits_deg: [-90, 90]}\n"
-    "  elements: [Rz q1, Tx 400 mm, Ry q2, Tx 300 mm]\n"
-    "base: {position_mm: [10, 20, 30], rpy_deg: [0, 0, 90], known: [z, rx]}\n";
+const std::string head = testing::two_joint_arm +
+                         "base: {position_mm: [10, 20, 30], rpy_deg: [0, 0, 90], known: [z, rx]}\n";
 
 const std::string poses =
     "sensor:\n"

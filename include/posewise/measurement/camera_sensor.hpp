@@ -27,7 +27,7 @@ struct Intrinsics {
 
     /// fx, fy, cx, cy in thousands of pixels, then the coefficients.
     VectorXd values() const;
-    /// The same model with other values().
+    /// These intrinsics, with other numbers in the order of values().
     Intrinsics with(const VectorXd& values) const;
     /// "fx", "fy", "cx", "cy", "k1", ...
     std::vector<std::string> names() const;
@@ -62,7 +62,7 @@ struct CameraSetup {
     std::optional<Isometry3d> known_place;
     std::vector<Vector3d> corners;  ///< in the board's frame, m
     Index first_corner = 1;         ///< number of the first one in files
-    Index columns = 0;              ///< of a chessboard: corners in a row; 0: it is none
+    Index columns = 0;              ///< corners in a row of a chessboard; 0 if it is no chessboard
     /// Whether the board may be larger or smaller than stated by a factor, 1 + board.scale, which
     /// is then the last unknown.
     bool is_scale_unknown = false;
@@ -140,10 +140,10 @@ class CameraSensor final : public Sensor {
     ObservedPoints points_with(const Intrinsics& intrinsics) const;
 
     CameraSetup setup_;
-    Targets origin_;                         ///< of what is on the flange
+    Targets origin_;                         ///< where what is on the flange has its origin
     std::vector<Index> unknown_intrinsics_;  ///< indices among Intrinsics::values()
-    std::optional<Vector3d> normal_;         ///< of the front, in the board's frame, if it is plane
-    double widest_ = 1e3;                    ///< of the tangents at which the image does not fold
+    std::optional<Vector3d> normal_;         ///< away from the front of a plane board, in its frame
+    double widest_ = 1e3;  ///< largest x/z at which the lens does not fold the image
 };
 
 /// Number of the first target in files that list corners, CameraSetup::first_corner.

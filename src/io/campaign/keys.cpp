@@ -291,8 +291,7 @@ const YamlKeys places{
          "`3`"},
         {"position_mm", "targets, tool, place, anchors, socket and base",
          "where they are expected (targets, tool and place in the flange frame, anchors and base "
-         "in the "
-         "instrument's)",
+         "in the instrument's)",
          "", "`[[0, 0, 50]]`"},
         {"radius_mm", "targets",
          "of points and distances: the ball's, a body that keeps off the cell's obstacles; 0: a "

@@ -7,6 +7,7 @@
 
 #include "core/text.hpp"
 #include "measurement/noise.hpp"
+#include "planning_problem.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/measurement/campaign.hpp"
@@ -14,10 +15,6 @@
 
 namespace posewise {
 namespace {
-
-std::string with_unit(const std::string& name, const AmountUnits& units) {
-    return units.si.empty() ? name : fmt::format("{}_{}", name, units.si);
-}
 
 bool turns(const Chain& robot, Index joint) {
     return robot.joint(joint).motion == Motion::Rotation;
@@ -111,7 +108,7 @@ std::vector<std::string> configuration_columns(const Campaign& campaign) {
     const Chain& robot = campaign.robot;
     std::vector<std::string> columns;
     for (Index j = 0; j < robot.joint_count(); ++j) {
-        columns.push_back(with_unit(joint_name(robot, j), units_of(turns(robot, j))));
+        columns.push_back(detail::with_unit(joint_name(robot, j), units_of(turns(robot, j))));
     }
     for (const MeasuredTorque& torque : robot.torques()) {
         columns.push_back("tau_" + joint_name(robot, torque.joint) + "_Nm");
@@ -140,8 +137,9 @@ std::vector<NamedNumber> assumptions_of(const Campaign& campaign) {
         add("model_error_common", common);
     }
     for (Index j = 0; j < campaign.joint_repeatability.size(); ++j) {
-        add("joint_repeatability/" + escape_slashes(with_unit(joint_name(campaign.robot, j),
-                                                              units_of(turns(campaign.robot, j)))),
+        add("joint_repeatability/" +
+                escape_slashes(detail::with_unit(joint_name(campaign.robot, j),
+                                                 units_of(turns(campaign.robot, j)))),
             campaign.joint_repeatability[j]);
     }
     const auto units = parameter_units(campaign);
@@ -149,7 +147,7 @@ std::vector<NamedNumber> assumptions_of(const Campaign& campaign) {
     Index k = 0;
     for (const std::string& name : parameter_names(campaign)) {
         const AmountUnits& unit = *units[static_cast<std::size_t>(k)];
-        add("expected_error/" + escape_slashes(with_unit(name, unit)), scale[k++]);
+        add("expected_error/" + escape_slashes(detail::with_unit(name, unit)), scale[k++]);
     }
     return numbers;
 }

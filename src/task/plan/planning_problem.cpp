@@ -237,6 +237,10 @@ MatrixXd held_information(const PlanningProblem& problem) {
     return information_of(rows.topRows(rows.rows() - kept), parameter_count(problem.campaign));
 }
 
+std::string with_unit(const std::string& name, const AmountUnits& units) {
+    return units.si.empty() ? name : fmt::format("{}_{}", name, units.si);
+}
+
 std::vector<NamedNumber> standard_deviations(const Campaign& campaign, const MatrixXd& M) {
     const MatrixXd covariance = M.llt().solve(MatrixXd::Identity(M.rows(), M.cols()));
     const VectorXd deviations =
@@ -245,9 +249,7 @@ std::vector<NamedNumber> standard_deviations(const Campaign& campaign, const Mat
     const auto units = parameter_units(campaign);
     std::vector<NamedNumber> named;
     for (std::size_t k = 0; k < names.size(); ++k) {
-        const std::string unit(units[k]->si);
-        named.push_back(
-            {unit.empty() ? names[k] : names[k] + '_' + unit, deviations[static_cast<Index>(k)]});
+        named.push_back({with_unit(names[k], *units[k]), deviations[static_cast<Index>(k)]});
     }
     return named;
 }

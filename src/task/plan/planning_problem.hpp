@@ -26,6 +26,9 @@ struct PlanningProblem {
 /// (some joint, rad; farther if the cell says so).
 inline constexpr double distance_from_others = to_radians(5);
 
+/// "camera.x_m": a number's name in a plan, with its SI unit if it has one.
+std::string with_unit(const std::string& name, const AmountUnits& units);
+
 /// The options that a plan was made with, to state its problem again: all of its poses are its own.
 PlanningOptions options_of(const Plan& plan, const PlanningOptions& inputs);
 
