@@ -1,8 +1,11 @@
 #include "posewise/jacobian/identification.hpp"
 
+#include <algorithm>
+
 #include "core/parallel.hpp"
 #include "measurement/noise.hpp"
 #include "posewise/core/errors.hpp"
+#include "whitened_pose.hpp"
 
 namespace posewise {
 namespace {
@@ -22,12 +25,12 @@ void check_repeats(const Campaign& campaign, Index configuration_count,
     }
 }
 
-/// Every pose's rows of the targets it shows: of all rows J those that `finish(motion, repeats, J)`
-/// has taken to the front; `make_finish()` makes one for each range of configurations.
-template <typename MakeFinish>
+/// Every pose's rows of the targets it shows, at most `most_rows`: those that `fill(motion,
+/// repeats, rows)` states; `make_fill()` makes one for each range of configurations.
+template <typename MakeFill>
 Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
-                   const RowMatrixXd& configurations, const RowMatrixXd& repeats,
-                   const MakeFinish& make_finish) {
+                   const RowMatrixXd& configurations, const RowMatrixXd& repeats, Index most_rows,
+                   const MakeFill& make_fill) {
     for (Index i = 0; i < configurations.rows(); ++i) {
         campaign.robot.check_configuration(configurations.row(i).transpose());
     }
@@ -37,23 +40,22 @@ Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
     Blocks blocks;
     for (Index i = 0; i < configurations.rows(); ++i) {
         const Index seen = (repeats.row(i).array() > 0).count();
-        blocks.first_row.push_back(blocks.first_row.back() + seen * sensor.rows_per_target());
+        const Index rows = std::min(seen * sensor.rows_per_target(), most_rows);
+        blocks.first_row.push_back(blocks.first_row.back() + rows);
     }
     blocks.matrix.resize(blocks.first_row.back(), parameter_count(campaign));
     detail::for_each_range(configurations.rows(), grain, [&](Index first, Index last) {
         FlangeMotion motion;
-        RowMatrixXd J(sensor.row_count(), blocks.parameter_count());
         VectorXd q(configurations.cols());
         VectorXd times(repeats.cols());
-        auto finish = make_finish();
+        auto fill = make_fill();
         for (Index i = first; i < last; ++i) {
             q = configurations.row(i).transpose();
             times = repeats.row(i).transpose();
-            differentiate_pose(campaign, parameters, q, motion, J);
+            differentiate_flange(campaign, parameters, q, motion);
             const Index row = blocks.first_row[static_cast<std::size_t>(i)];
             const Index count = blocks.first_row[static_cast<std::size_t>(i) + 1] - row;
-            finish(motion, times, J);
-            blocks.matrix.middleRows(row, count) = J.topRows(count);
+            fill(motion, times, blocks.matrix.middleRows(row, count));
         }
     });
     return blocks;
@@ -77,12 +79,18 @@ void differentiate_pose(const Campaign& campaign, const Parameters& parameters,
 
 Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
                          const RowMatrixXd& configurations, const RowMatrixXd& repeats) {
-    const Index width = campaign.sensor->rows_per_target();
-    const auto take_seen = [width](const FlangeMotion&, const VectorXd& times, RowMatrixXd& J) {
-        Index count = 0;
-        for (const Index row : seen_rows(times.array() > 0, width)) J.row(count++) = J.row(row);
-    };
-    return fill_blocks(campaign, parameters, configurations, repeats, [&] { return take_seen; });
+    const Sensor& sensor = *campaign.sensor;
+    return fill_blocks(campaign, parameters, configurations, repeats, sensor.row_count(), [&] {
+        return [&, J = RowMatrixXd(sensor.row_count(), parameter_count(campaign))](
+                   const FlangeMotion& motion, const VectorXd& times,
+                   Eigen::Ref<RowMatrixXd> rows) mutable {
+            sensor.differentiate(motion.world_from_flange, motion.twists, parameters.sensor, J);
+            Index count = 0;
+            for (const Index row : seen_rows(times.array() > 0, sensor.rows_per_target())) {
+                rows.row(count++) = J.row(row);
+            }
+        };
+    });
 }
 
 Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
@@ -115,12 +123,15 @@ Blocks make_position_blocks(const Campaign& campaign, const Parameters& paramete
 Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,
                    const RowMatrixXd& configurations, const RowMatrixXd& repeats) {
     const VectorXd scale = parameter_scale(campaign);
-    // Hidden rows are left out before whitening: what is not observed has no covariance.
-    return fill_blocks(campaign, parameters, configurations, repeats, [&] {
-        return [&, noise = detail::PoseNoise(campaign)](
-                   const FlangeMotion& motion, const VectorXd& times, RowMatrixXd& J) mutable {
-            const Index count = noise.whiten_seen(motion, parameters.sensor, times, J);
-            J.topRows(count) *= scale.asDiagonal();
+    const Index most_rows = 6 + parameters.sensor.size();
+    return fill_blocks(campaign, parameters, configurations, repeats, most_rows, [&] {
+        return [&, pose = detail::WhitenedPose(campaign)](const FlangeMotion& motion,
+                                                          const VectorXd& times,
+                                                          Eigen::Ref<RowMatrixXd> rows) mutable {
+            if (rows.rows() == 0) return;
+            pose.place(motion, parameters.sensor, times);
+            detail::spread(pose.narrow(), motion.twists, rows);
+            rows *= scale.asDiagonal();
         };
     });
 }

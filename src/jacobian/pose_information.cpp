@@ -2,31 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
-#include "measurement/noise.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/jacobian/identification.hpp"
+#include "whitened_pose.hpp"
 
 namespace posewise::detail {
 namespace {
 
 bool is_blind(const SeenTargets& is_seen) { return is_seen.size() > 0 && !is_seen.any(); }
-
-/// Rows of the sensor that a pose shows; empty: all.
-std::vector<Index> rows_shown(const Sensor& sensor, const SeenTargets& is_seen) {
-    if (is_seen.all()) return {};
-    return seen_rows(is_seen, sensor.rows_per_target());
-}
-
-/// Rows that a pose does not show leave.
-void keep_rows(const std::vector<Index>& rows, RowMatrixXd& A) {
-    if (!rows.empty()) A = A(rows, Eigen::all).eval();
-}
-void keep_rows_and_columns(const std::vector<Index>& rows, MatrixXd& A) {
-    if (!rows.empty()) A = A(rows, rows).eval();
-}
 
 }  // namespace
 
@@ -41,16 +25,24 @@ PoseInformation::PoseInformation(const Campaign& campaign, Parameters parameters
     }
 }
 
+VectorXd PoseInformation::repeats(const SeenTargets& is_seen) const {
+    const VectorXd all = VectorXd::Constant(campaign_.sensor->target_count(), repeats_);
+    if (is_seen.size() == 0) return all;
+    return is_seen.matrix().transpose().cast<double>().cwiseProduct(all);
+}
+
 RowMatrixXd PoseInformation::rows(const VectorXd& q, const SeenTargets& is_seen) const {
     if (is_blind(is_seen)) return RowMatrixXd::Zero(0, parameter_count());
-    const std::vector<Index> shown = rows_shown(*campaign_.sensor, is_seen);
     FlangeMotion motion;
-    RowMatrixXd B(campaign_.sensor->row_count(), parameter_count());
-    differentiate_pose(campaign_, parameters_, q, motion, B);
-    MatrixXd S = mean_covariance(campaign_, motion, parameters_.sensor, repeats_);
-    keep_rows(shown, B);
-    keep_rows_and_columns(shown, S);
-    whiten(S, B);
+    differentiate_flange(campaign_, parameters_, q, motion);
+    WhitenedPose pose(campaign_);
+    pose.place(motion, parameters_.sensor, repeats(is_seen));
+    return block(pose, motion);
+}
+
+RowMatrixXd PoseInformation::block(const WhitenedPose& pose, const FlangeMotion& motion) const {
+    RowMatrixXd B(pose.narrow().rows(), parameter_count());
+    spread(pose.narrow(), motion.twists, B);
     B *= scale_.asDiagonal();
     return B;
 }
@@ -77,40 +69,40 @@ VectorXd PoseInformation::differentiate_weighed(const VectorXd& q, const Weigh& 
         return VectorXd::Zero(q.size());
     }
     const Sensor& sensor = *campaign_.sensor;
-    const std::vector<Index> rows = rows_shown(sensor, is_seen);
+    const VectorXd& unknowns = parameters_.sensor;
     FlangeMotion motion;
     std::vector<FlangeMotionRate> rates;
     differentiate_flange_twice(campaign_, parameters_, q, motion, rates);
-    RowMatrixXd P(sensor.row_count(), parameter_count());
-    sensor.differentiate(motion.world_from_flange, motion.twists, parameters_.sensor, P);
-    P *= scale_.asDiagonal();
-    MatrixXd S = mean_covariance(campaign_, motion, parameters_.sensor, repeats_);
-    keep_rows(rows, P);
-    keep_rows_and_columns(rows, S);
-    const Eigen::LLT<MatrixXd> cholesky(S);
-    cholesky.matrixL().solveInPlace(P);  // the block
-    RowMatrixXd PZ = weigh(P);
-    cholesky.matrixU().solveInPlace(PZ);
-    cholesky.matrixU().solveInPlace(P);
-    const MatrixXd X = PZ * P.transpose();
-    PZ *= scale_.asDiagonal();
+    WhitenedPose pose(campaign_);
+    const VectorXd times = repeats(is_seen);
+    pose.place(motion, unknowns, times);
+    const RowMatrixXd B = block(pose, motion);
+    const RowMatrixXd BZ = weigh(B);
 
-    const bool is_constant = has_constant_noise(campaign_);
-    RowMatrixXd J_rate;
-    MatrixXd S_rate;
+    const Index moving = motion.twists.cols();
+    const RowMatrixXd scaled = BZ * scale_.asDiagonal();
+    MatrixXd BZE(BZ.rows(), pose.narrow().cols());
+    BZE.leftCols<6>() = scaled.leftCols(moving) * motion.twists.transpose();
+    BZE.rightCols(unknowns.size()) = scaled.rightCols(unknowns.size());
+    const WhitenedPose::Slopes slopes = pose.slopes(BZE, BZ * B.transpose());
+    const TwistMatrix by_twists = pose.narrow().leftCols<6>().transpose() * scaled.leftCols(moving);
+
+    const std::vector<Index>& seen = pose.readings();
+    RowMatrixXd A_rate(sensor.row_count(), 6 + unknowns.size());
     VectorXd gradient(q.size());
     for (Index j = 0; j < q.size(); ++j) {
         const FlangeMotionRate& rate = rates[static_cast<std::size_t>(j)];
-        J_rate.resize(sensor.row_count(), parameter_count());
-        sensor.differentiate_along(motion.world_from_flange, motion.twists,
-                                   motion.joint_twists.col(j), rate.twists, parameters_.sensor,
-                                   J_rate);
-        keep_rows(rows, J_rate);
-        gradient[j] = 2 * PZ.cwiseProduct(J_rate).sum();
-        if (is_constant) continue;
-        S_rate = mean_covariance_rate(campaign_, motion, j, rate, parameters_.sensor, repeats_);
-        keep_rows_and_columns(rows, S_rate);
-        gradient[j] -= X.cwiseProduct(S_rate).sum();
+        const Twist direction = motion.joint_twists.col(j);
+        sensor.differentiate_along(motion.world_from_flange, TwistMatrix::Identity(6, 6), direction,
+                                   TwistMatrix::Zero(6, 6), unknowns, A_rate);
+        const Matrix6d C_rate = flange_covariance_rate(campaign_, motion, j, rate, unknowns);
+        gradient[j] = 2 * slopes.by_A.cwiseProduct(A_rate(seen, Eigen::all)).sum() +
+                      2 * by_twists.cwiseProduct(rate.twists).sum() -
+                      slopes.by_C.cwiseProduct(C_rate).sum();
+        if (sensor.has_constant_covariance()) continue;
+        const MatrixXd N_rate =
+            sensor.covariance_rate(motion.world_from_flange, direction, unknowns) / repeats_;
+        gradient[j] -= slopes.by_N.cwiseProduct(N_rate(seen, seen)).sum();
     }
     return gradient;
 }

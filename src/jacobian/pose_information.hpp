@@ -7,6 +7,8 @@
 
 namespace posewise::detail {
 
+class WhitenedPose;
+
 /// What one pose tells about the parameters as a function of its joints: the information
 /// B(q)^T B(q) of its block, whitened and scaled as by make_blocks(), and its derivative. Made once
 /// for many configurations; every call is free of side effects, so threads may share one.
@@ -19,17 +21,16 @@ class PoseInformation {
     Index joint_count() const { return campaign_.robot.joint_count(); }
     Index parameter_count() const { return scale_.size(); }
 
-    /// The block B: rows of the targets shown x parameter_count(), without units. `is_seen` are the
-    /// targets that the pose shows; empty: all.
+    /// The block B: rows of the targets shown x parameter_count(), without units; at most 6 and one
+    /// for each of the sensor's unknowns. `is_seen` are the targets that the pose shows; empty:
+    /// all.
     RowMatrixXd rows(const VectorXd& q, const SeenTargets& is_seen = {}) const;
 
     /// B^T B: parameter_count() square, without units.
     MatrixXd evaluate(const VectorXd& q, const SeenTargets& is_seen = {}) const;
 
     /// Derivative of trace(Z B^T B) by the joints, for a symmetric Z (per rad or m). With Z the
-    /// gradient of a criterion by the information matrix, this is the criterion's by this pose:
-    /// with J the scaled Jacobian, S the covariance of the mean, P = S^-1 J,
-    /// d trace = 2 trace(Z P^T dJ) - trace(P Z P^T dS).
+    /// gradient of a criterion by the information matrix, this is the criterion's by this pose.
     VectorXd differentiate(const VectorXd& q, const MatrixXd& Z,
                            const SeenTargets& is_seen = {}) const;
 
@@ -40,6 +41,10 @@ class PoseInformation {
                                    const SeenTargets& is_seen = {}) const;
 
   private:
+    /// Of each target, 0 where it is not seen.
+    VectorXd repeats(const SeenTargets& is_seen) const;
+    RowMatrixXd block(const WhitenedPose& pose, const FlangeMotion& motion) const;
+
     const Campaign& campaign_;
     Parameters parameters_;
     double repeats_;

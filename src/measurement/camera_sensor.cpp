@@ -52,20 +52,6 @@ CameraSetup checked(CameraSetup setup) {
     return setup;
 }
 
-/// The intrinsic parameters with the unknown ones, which follow the place's. Beyond the widest
-/// direction as stated, for brown_conrady at most 72 degrees, no place depends on the polynomial.
-detail::Lens lens_with(const Intrinsics& stated, double widest, const std::vector<Index>& unknown,
-                       const VectorXd& unknowns, Index first) {
-    detail::Lens lens = detail::lens_of(stated);
-    lens.widest = stated.distortion == Distortion::BrownConrady ? std::min(widest, 3.0) : widest;
-    for (const Index k : unknown) lens.values[static_cast<std::size_t>(k)] = unknowns[first++];
-    return lens;
-}
-
-/// Derivatives of rows for one corner at p in the camera's frame, by rotation vectors and
-/// translations of the frame that moves.
-using ByMotion = Eigen::Matrix<double, 2, 6>;
-
 }  // namespace
 
 CameraSensor::CameraSensor(CameraSetup setup)
@@ -95,6 +81,17 @@ Intrinsics CameraSensor::intrinsics(const VectorXd& unknowns) const {
     VectorXd values = setup_.intrinsics.values();
     values(unknown_intrinsics_) = unknowns.segment(place_count(), intrinsics_count());
     return setup_.intrinsics.with(values);
+}
+
+detail::Lens CameraSensor::lens_with(const VectorXd& unknowns) const {
+    detail::Lens lens = detail::lens_of(setup_.intrinsics);
+    const bool is_polynomial = lens.distortion == Distortion::BrownConrady;
+    lens.widest = is_polynomial ? std::min(widest_, 3.0) : widest_;
+    Index next = place_count();
+    for (const Index k : unknown_intrinsics_) {
+        lens.values[static_cast<std::size_t>(k)] = unknowns[next++];
+    }
+    return lens;
 }
 
 Isometry3d CameraSensor::camera_from_board(const Isometry3d& world_from_flange,
@@ -161,59 +158,11 @@ std::vector<const AmountUnits*> CameraSensor::unknown_units() const {
 void CameraSensor::predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                            Eigen::Ref<VectorXd> observation) const {
     const Isometry3d board = camera_from_board(world_from_flange, unknowns);
-    const detail::Lens lens =
-        lens_with(setup_.intrinsics, widest_, unknown_intrinsics_, unknowns, place_count());
+    const detail::Lens lens = lens_with(unknowns);
     const double factor = board_factor(unknowns);
     for (Index k = 0; k < target_count(); ++k) {
         observation.segment<2>(2 * k) =
             detail::place_of(lens, board * (factor * setup_.corners[static_cast<std::size_t>(k)]));
-    }
-}
-
-void CameraSensor::differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
-                                 const VectorXd& unknowns,
-                                 Eigen::Ref<RowMatrixXd> J_measured_parameters) const {
-    auto& J = J_measured_parameters;
-    const bool has_unknowns = J.cols() > twists.cols();
-    const Isometry3d T = place(unknowns);
-    const Isometry3d board = camera_from_board(world_from_flange, unknowns);
-    const detail::Lens lens =
-        lens_with(setup_.intrinsics, widest_, unknown_intrinsics_, unknowns, place_count());
-    const Matrix3d turn_rate =
-        has_unknown_place() ? rotation_vector_rate(unknowns.segment<3>(3)) : Matrix3d::Zero();
-    // How a point moves in the camera's frame while the flange moves by a twist: on the flange,
-    // v + w x p; else, with the camera, -R^T (v + w x X).
-    const Matrix3d R = setup_.is_on_flange ? Matrix3d(-board.linear()) : Matrix3d::Identity();
-    // The same while the place moves in the flange's frame, about its origin.
-    const Matrix3d R_place = setup_.is_on_flange ? Matrix3d(-T.linear().transpose())
-                                                 : Matrix3d(world_from_flange.linear());
-    detail::Projection projection;
-    const double factor = board_factor(unknowns);
-    for (Index k = 0; k < target_count(); ++k) {
-        const Vector3d X = factor * setup_.corners[static_cast<std::size_t>(k)];
-        const Vector3d p = board * X;
-        detail::differentiate_projection(lens, p, projection);
-        ByMotion by_twist;
-        by_twist.rightCols<3>() = projection.by_point * R;
-        by_twist.leftCols<3>() =
-            -by_twist.rightCols<3>() * cross_matrix(setup_.is_on_flange ? X : p);
-        J.block(2 * k, 0, 2, twists.cols()).noalias() = by_twist.lazyProduct(twists);
-        if (!has_unknowns) continue;
-        auto own = J.block(2 * k, twists.cols(), 2, J.cols() - twists.cols());
-        if (has_unknown_place()) {
-            const Vector3d arm = setup_.is_on_flange
-                                     ? Vector3d(T.linear() * p)  // from the camera, flange axes
-                                     : Vector3d(T.linear() * X);
-            const Eigen::Matrix<double, 2, 3> by_place = projection.by_point * R_place;
-            own.leftCols<3>() = by_place;
-            own.middleCols<3>(3) = -by_place * cross_matrix(arm) * turn_rate;
-        }
-        for (Index i = 0; i < intrinsics_count(); ++i) {
-            own.col(place_count() + i) =
-                projection.by_values.col(unknown_intrinsics_[static_cast<std::size_t>(i)]);
-        }
-        if (!setup_.is_scale_unknown) continue;
-        own.rightCols<1>() = projection.by_point * board.linear() * X / factor;
     }
 }
 
@@ -227,8 +176,7 @@ void CameraSensor::covariance(const Isometry3d&, const VectorXd&,
 void CameraSensor::view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                                    Eigen::Ref<VectorXd> clearances) const {
     const Isometry3d board = camera_from_board(world_from_flange, unknowns);
-    const detail::Lens lens =
-        lens_with(setup_.intrinsics, widest_, unknown_intrinsics_, unknowns, place_count());
+    const detail::Lens lens = lens_with(unknowns);
     const double widest = unknown_intrinsics_.empty() ? widest_ : detail::widest_tangent(lens);
     const double factor = board_factor(unknowns);
     for (Index k = 0; k < target_count(); ++k) {

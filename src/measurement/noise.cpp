@@ -154,39 +154,42 @@ bool has_constant_noise(const Campaign& campaign) {
            campaign.sensor->has_constant_covariance();
 }
 
-MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& motion, Index joint,
-                              const FlangeMotionRate& rate, const VectorXd& sensor_unknowns,
-                              double repeats) {
-    const Twist direction = motion.joint_twists.col(joint);
-    MatrixXd covariance_rate =
-        campaign.sensor->covariance_rate(motion.world_from_flange, direction, sensor_unknowns) /
-        repeats;
-    const auto add = [&](const TwistMatrix& twists, const TwistMatrix& rates,
-                         const VectorXd& sizes) {
-        RowMatrixXd effect(campaign.sensor->row_count(), twists.cols());
-        campaign.sensor->differentiate(motion.world_from_flange, twists, sensor_unknowns, effect);
-        RowMatrixXd effect_rate(effect.rows(), effect.cols());
-        campaign.sensor->differentiate_along(motion.world_from_flange, twists, direction, rates,
-                                             sensor_unknowns, effect_rate);
-        const MatrixXd half = effect_rate * sizes.cwiseAbs2().asDiagonal() * effect.transpose();
-        covariance_rate += half + half.transpose();
-    };
-    if (campaign.joint_repeatability.size() > 0) {
-        add(motion.joint_twists, rate.joint_twists, campaign.joint_repeatability);
+Matrix6d flange_covariance(const Campaign& campaign, const FlangeMotion& motion,
+                           const VectorXd& sensor_unknowns) {
+    Matrix6d C = Matrix6d::Zero();
+    const VectorXd& sizes = campaign.joint_repeatability;
+    if (sizes.size() > 0) {
+        C = motion.joint_twists * sizes.cwiseAbs2().asDiagonal() * motion.joint_twists.transpose();
+    }
+    if (const double common = common_model_error(campaign); common > 0) {
+        const Matrix6d twists =
+            model_error_twists(campaign, motion.world_from_flange, sensor_unknowns);
+        C += common * common * twists * twists.transpose();
+    }
+    return C;
+}
+
+Matrix6d flange_covariance_rate(const Campaign& campaign, const FlangeMotion& motion, Index joint,
+                                const FlangeMotionRate& rate, const VectorXd& sensor_unknowns) {
+    Matrix6d half = Matrix6d::Zero();
+    const VectorXd& sizes = campaign.joint_repeatability;
+    if (sizes.size() > 0) {
+        half = rate.joint_twists * sizes.cwiseAbs2().asDiagonal() * motion.joint_twists.transpose();
     }
     if (const double common = common_model_error(campaign); common > 0) {
         const TargetGroup group = group_of_targets(*campaign.sensor, sensor_unknowns);
         const Vector3d p = motion.world_from_flange * group.middle;
         const Vector3d p_rate =
-            shares_of(campaign, group).turn * (direction.tail<3>() + direction.head<3>().cross(p));
-        TwistMatrix rates = TwistMatrix::Zero(6, 6);
+            shares_of(campaign, group).turn * velocity_of(p, motion.joint_twists.col(joint));
+        Matrix6d rates = Matrix6d::Zero();
         for (Index k = 0; k < 3; ++k) {
             rates.block<3, 1>(3, 3 + k) = p_rate.cross(Vector3d::Unit(k));
         }
-        add(model_error_twists(campaign, motion.world_from_flange, sensor_unknowns), rates,
-            VectorXd::Constant(6, common));
+        const Matrix6d twists =
+            model_error_twists(campaign, motion.world_from_flange, sensor_unknowns);
+        half += common * common * rates * twists.transpose();
     }
-    return covariance_rate;
+    return half + half.transpose();
 }
 
 void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows) {
@@ -210,7 +213,6 @@ void whiten(const MatrixXd& covariance, Eigen::Ref<RowMatrixXd> rows, MatrixXd& 
 
 PoseNoise::PoseNoise(const Campaign& campaign)
     : campaign_(campaign),
-      is_constant_(has_constant_noise(campaign)),
       common_(common_model_error(campaign)),
       own_variances_(own_model_errors(campaign).cwiseAbs2()),
       of_sensor_(campaign.sensor->row_count(), campaign.sensor->row_count()),
@@ -219,9 +221,19 @@ PoseNoise::PoseNoise(const Campaign& campaign)
 
 const MatrixXd& PoseNoise::covariance(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
                                       const VectorXd& repeats) {
-    const bool is_same = repeats_.size() > 0 && repeats_ == repeats;
-    if (is_same && is_constant_) return covariance_;
+    const MatrixXd& own = own_covariance(motion, sensor_unknowns, repeats);
+    if (effect_.cols() == 0) return own;
+    covariance_ = own;
+    add_effects(motion, sensor_unknowns);
+    return covariance_;
+}
+
+const MatrixXd& PoseNoise::own_covariance(const FlangeMotion& motion,
+                                          const VectorXd& sensor_unknowns,
+                                          const VectorXd& repeats) {
     const Sensor& sensor = *campaign_.sensor;
+    const bool is_same = repeats_.size() > 0 && repeats_ == repeats;
+    if (is_same && sensor.has_constant_covariance()) return own_;
     const Index width = sensor.rows_per_target();
     if (!is_same) {
         repeats_ = repeats;
@@ -229,17 +241,16 @@ const MatrixXd& PoseNoise::covariance(const FlangeMotion& motion, const VectorXd
     }
     sensor.covariance(motion.world_from_flange, sensor_unknowns, of_sensor_);
     const Index count = std::ssize(rows_);
-    covariance_.resize(count, count);
+    own_.resize(count, count);
     for (Index k = 0; k < count; ++k) {  // targets are independent of each other
         const Index row = rows_[static_cast<std::size_t>(k)];
         for (Index i = 0; i < count; ++i) {
             const double of_one = of_sensor_(row, rows_[static_cast<std::size_t>(i)]);
-            covariance_(k, i) = of_one / repeats[row / width];
+            own_(k, i) = of_one / repeats[row / width];
         }
-        covariance_(k, k) += own_variances_[row];
+        own_(k, k) += own_variances_[row];
     }
-    if (effect_.cols() > 0) add_effects(motion, sensor_unknowns);
-    return covariance_;
+    return own_;
 }
 
 void PoseNoise::add_effects(const FlangeMotion& motion, const VectorXd& sensor_unknowns) {

@@ -7,6 +7,8 @@
 
 namespace posewise::detail {
 
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
 /// Throws InputError if joint_repeatability has another size than the joints (and is not empty) or
 /// a value that is negative or not finite, or if a model error is.
 void check_noise(const Campaign& campaign);
@@ -45,11 +47,15 @@ MatrixXd mean_covariance(const Campaign& campaign, const FlangeMotion& motion,
 /// Whether mean_covariance() is the same at every pose.
 bool has_constant_noise(const Campaign& campaign);
 
-/// Rate of mean_covariance() with one joint. `rate` is that joint's, as of
+/// Covariance C of the flange's motion that repeats do not reduce, of twists about the world's
+/// origin: s^2 of model_error_twists() and r^2 of the joints' twists. What readings share is
+/// A C A^T of mean_covariance(), A their derivative by such twists.
+Matrix6d flange_covariance(const Campaign& campaign, const FlangeMotion& motion,
+                           const VectorXd& sensor_unknowns);
+/// Rate of flange_covariance() with one joint. `rate` is that joint's, as of
 /// Chain::differentiate_twice().
-MatrixXd mean_covariance_rate(const Campaign& campaign, const FlangeMotion& motion, Index joint,
-                              const FlangeMotionRate& rate, const VectorXd& sensor_unknowns,
-                              double repeats);
+Matrix6d flange_covariance_rate(const Campaign& campaign, const FlangeMotion& motion, Index joint,
+                                const FlangeMotionRate& rate, const VectorXd& sensor_unknowns);
 
 /// Multiplies `rows` from the left by L^-1, where covariance = L L^T (Cholesky): errors with this
 /// covariance become independent with variance 1. Throws as cholesky_factor().
@@ -68,7 +74,10 @@ class PoseNoise {
     /// mean_covariance() of a pose, until the next one is asked for.
     const MatrixXd& covariance(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
                                const VectorXd& repeats);
-    /// Which rows of a complete observation it is of.
+    /// What it is without what flange_covariance() adds; covariance() ends it.
+    const MatrixXd& own_covariance(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
+                                   const VectorXd& repeats);
+    /// Which rows of a complete observation they are of.
     const std::vector<Index>& rows() const { return rows_; }
 
     /// Of `rows`, one for each number of a complete observation, takes those of the targets seen,
@@ -80,15 +89,15 @@ class PoseNoise {
     void add_effects(const FlangeMotion& motion, const VectorXd& sensor_unknowns);
 
     const Campaign& campaign_;
-    bool is_constant_;
     double common_;           ///< common_model_error()
     VectorXd own_variances_;  ///< one a row of the sensor; so are the rows of what follows
     MatrixXd of_sensor_;
     TwistMatrix twists_;  ///< model_error_twists()
     RowMatrixXd effect_;  ///< by one standard deviation of each joint, then of each motion
     std::vector<Index> rows_;
-    VectorXd repeats_;     ///< that covariance_ is of
-    MatrixXd covariance_;  ///< of rows_, as what follows
+    VectorXd repeats_;  ///< that rows_ and own_ are of
+    MatrixXd own_;      ///< of rows_, as what follows
+    MatrixXd covariance_;
     RowMatrixXd seen_effect_;
     MatrixXd factor_;
 };

@@ -137,7 +137,24 @@ TEST(MeanCovariance, DividesEachTargetByItsOwnRepeatsAndLeavesOutThoseNotSeen) {
     EXPECT_EQ(covariance(VectorXd(Vector3d(4, 4, 4))), covariance(4.0));
 }
 
-TEST(MeanCovarianceRate, AgreesWithDifferences) {
+TEST(FlangeCovariance, IsWhatTheReadingsShare) {
+    Campaign campaign = noisy_campaign();
+    std::vector<FlangeMotionRate> rates;
+    const FlangeMotion motion = motion_at(campaign, VectorXd::LinSpaced(6, -0.5, 0.7), rates);
+    const VectorXd& targets = campaign.nominal.sensor;
+    RowMatrixXd A(9, 6 + targets.size());
+    campaign.sensor->differentiate(motion.world_from_flange, TwistMatrix::Identity(6, 6), targets,
+                                   A);
+    PoseNoise noise(campaign);
+    const VectorXd repeats = VectorXd::Constant(3, 5);
+    const MatrixXd own = noise.own_covariance(motion, targets, repeats);
+    const MatrixXd shared = A.leftCols<6>() * flange_covariance(campaign, motion, targets) *
+                            A.leftCols<6>().transpose();
+    EXPECT_TRUE(mean_covariance(campaign, motion, targets, 5).isApprox(own + shared, 1e-12));
+    EXPECT_GT(shared.norm(), own.norm() / 10);
+}
+
+TEST(FlangeCovarianceRate, AgreesWithDifferences) {
     const Campaign campaign = noisy_campaign();
     const VectorXd& targets = campaign.nominal.sensor;
     std::vector<FlangeMotionRate> rates;
@@ -147,14 +164,14 @@ TEST(MeanCovarianceRate, AgreesWithDifferences) {
         RandomStream stream(72, item);
         const VectorXd q = testing::random_vector(stream, 6, 2);
         const FlangeMotion motion = motion_at(campaign, q, rates);
-        MatrixXd J(81, 6);
+        MatrixXd J(36, 6);
         for (Index j = 0; j < 6; ++j) {
-            J.col(j) = 1e8 * mean_covariance_rate(campaign, motion, j,
-                                                  rates[static_cast<std::size_t>(j)], targets, 3)
+            J.col(j) = 1e8 * flange_covariance_rate(campaign, motion, j,
+                                                    rates[static_cast<std::size_t>(j)], targets)
                                  .reshaped();
         }
         const auto covariance = [&](const VectorXd& joints) -> VectorXd {
-            return 1e8 * mean_covariance(campaign, motion_at(campaign, joints, ignored), targets, 3)
+            return 1e8 * flange_covariance(campaign, motion_at(campaign, joints, ignored), targets)
                              .reshaped();
         };
         testing::expect_is_jacobian(J, covariance, q);

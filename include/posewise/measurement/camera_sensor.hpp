@@ -10,6 +10,12 @@ namespace posewise {
 
 using Vector2d = Eigen::Vector2d;
 
+namespace detail {
+struct CameraPose;
+struct CornerDerivative;
+struct Lens;
+}  // namespace detail
+
 /// How a lens departs from a pinhole. Names and formulas are OpenCV's.
 enum class Distortion {
     None,
@@ -116,6 +122,10 @@ class CameraSensor final : public Sensor {
     void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                        const VectorXd& unknowns,
                        Eigen::Ref<RowMatrixXd> J_measured_parameters) const override;
+    void differentiate_along(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                             const Twist& direction, const TwistMatrix& twist_rates,
+                             const VectorXd& unknowns,
+                             Eigen::Ref<RowMatrixXd> J_rate) const override;
     void covariance(const Isometry3d&, const VectorXd&,
                     Eigen::Ref<MatrixXd> covariance) const override;
     bool has_constant_covariance() const override { return true; }
@@ -137,6 +147,12 @@ class CameraSensor final : public Sensor {
     bool has_unknown_place() const { return !setup_.known_place; }
     Index place_count() const { return has_unknown_place() ? 6 : 0; }
     Index intrinsics_count() const { return static_cast<Index>(unknown_intrinsics_.size()); }
+    /// The intrinsic parameters with the unknown ones. Beyond the widest direction as stated, for
+    /// brown_conrady at most 72 degrees, no place depends on the polynomial.
+    detail::Lens lens_with(const VectorXd& unknowns) const;
+    detail::CameraPose pose_with(const Isometry3d& world_from_flange,
+                                 const VectorXd& unknowns) const;
+    void set_unknowns(const detail::CornerDerivative& corner, Eigen::Ref<RowMatrixXd> rows) const;
     ObservedPoints points_with(const Intrinsics& intrinsics) const;
 
     CameraSetup setup_;
