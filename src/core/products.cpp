@@ -87,6 +87,23 @@ struct AddProduct {
     }
 };
 
+/// X with zero columns up to a multiple of `part`: itself if it has none too few.
+struct Padded {
+    Padded(const Eigen::Ref<const RowMatrixXd>& X, Index part) {
+        columns = padded(X.cols(), part);
+        data = X.data();
+        if (columns == X.cols() && columns == X.outerStride()) return;
+        copy.setZero(X.rows(), columns);
+        copy.leftCols(X.cols()) = X;
+        data = copy.data();
+    }
+    Padded(const Padded&) = delete;
+
+    RowMatrixXd copy;
+    const double* data;
+    Index columns;
+};
+
 /// L in place of the lower half of M, column-major, four columns at a time; `is_positive` false
 /// where there is none.
 struct Factorise {
@@ -205,17 +222,14 @@ MatrixXd symmetric_gram(const Eigen::Ref<const RowMatrixXd>& A) {
 
 RowMatrixXd transposed_product(const Eigen::Ref<const RowMatrixXd>& A,
                                const Eigen::Ref<const RowMatrixXd>& B) {
-    const auto pad = [](const Eigen::Ref<const RowMatrixXd>& X, Index part) {
-        RowMatrixXd result = RowMatrixXd::Zero(X.rows(), padded(X.cols(), part));
-        result.leftCols(X.cols()) = X;
-        return result;
-    };
-    const RowMatrixXd left = pad(A, tile_rows);
-    const RowMatrixXd right = pad(B, most_columns);
-    RowMatrixXd M = RowMatrixXd::Zero(left.cols(), right.cols());
-    simd::run(AddProduct{left.data(), left.cols(), right.data(), right.cols(), A.rows(), M.data()});
+    const Padded left(A, tile_rows);
+    const Padded right(B, most_columns);
+    RowMatrixXd M = RowMatrixXd::Zero(left.columns, right.columns);
+    simd::run(AddProduct{left.data, left.columns, right.data, right.columns, A.rows(), M.data()});
     return M.topLeftCorner(A.cols(), B.cols());
 }
+
+Index whole_columns(Index columns) { return padded(columns, most_columns); }
 
 MatrixXd cholesky(const MatrixXd& M) {
     const Index size = padded(M.rows(), most_columns);

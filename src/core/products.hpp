@@ -13,6 +13,8 @@ MatrixXd gram(const Eigen::Ref<const RowMatrixXd>& A);
 /// The same, M^T = M.
 MatrixXd symmetric_gram(const Eigen::Ref<const RowMatrixXd>& A);
 
+/// So many columns or a few more: a B of whole_columns() is not copied.
+Index whole_columns(Index columns);
 /// A^T B.
 RowMatrixXd transposed_product(const Eigen::Ref<const RowMatrixXd>& A,
                                const Eigen::Ref<const RowMatrixXd>& B);

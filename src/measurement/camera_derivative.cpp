@@ -1,8 +1,6 @@
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "camera_model.hpp"
-#include "differences.hpp"
 #include "posewise/model/chain.hpp"
 
 namespace posewise {
@@ -36,30 +34,6 @@ using detail::CameraPose;
 using detail::CornerDerivative;
 using detail::Projection;
 
-/// How the projection changes while its point moves.
-struct ProjectionRate {
-    Eigen::Matrix<double, 2, 3> by_point;
-    detail::ByValues by_values;
-};
-ProjectionRate projection_rate(const detail::Lens& lens, const Vector3d& point,
-                               const Vector3d& velocity) {
-    const Index values = 4 + lens.count;
-    if (velocity.isZero(0)) {
-        return {Eigen::Matrix<double, 2, 3>::Zero(), detail::ByValues::Zero(2, values)};
-    }
-    // The image is smooth where the point moves by little of its depth.
-    constexpr double least_depth = 1e-6;  // m
-    const double step = 1e-3 * std::max(std::abs(point.z()), least_depth) / velocity.norm();
-    const MatrixXd rate = detail::slope_at_zero(step, [&](double time) -> MatrixXd {
-        Projection moved;
-        detail::differentiate_projection(lens, point + time * velocity, moved);
-        MatrixXd both(2, 3 + values);
-        both << moved.by_point, moved.by_values;
-        return both;
-    });
-    return {rate.leftCols<3>(), rate.rightCols(values)};
-}
-
 /// [-x^, I], by which a point x moves with a twist.
 Eigen::Matrix<double, 3, 6> velocity_by_twist(const Vector3d& x) {
     Eigen::Matrix<double, 3, 6> velocity;
@@ -70,10 +44,8 @@ Eigen::Matrix<double, 3, 6> velocity_by_twist(const Vector3d& x) {
 /// With P the derivative by the point p = camera X: while the flange moves by a twist (w, v), a
 /// board on it moves by v + w x p; a camera on it sees the board move by -R (v + w x X), with its
 /// axes R.
-CornerDerivative corner_derivative(const CameraPose& pose, const Vector3d& X) {
-    const Vector3d p = pose.camera * X;
-    Projection projection;
-    detail::differentiate_projection(pose.lens, p, projection);
+CornerDerivative corner_derivative(const CameraPose& pose, const Vector3d& X, const Vector3d& p,
+                                   const Projection& projection) {
     const auto& P = projection.by_point;
     const Matrix3d& R = pose.camera.linear();
     CornerDerivative corner;
@@ -94,8 +66,16 @@ CornerDerivative corner_derivative(const CameraPose& pose, const Vector3d& X) {
     return corner;
 }
 
-/// Rates of corner_derivative() while the flange moves by `direction`.
-CornerDerivative corner_rate(const CameraPose& pose, const Vector3d& X, const Twist& direction) {
+CornerDerivative corner_derivative(const CameraPose& pose, const Vector3d& X) {
+    const Vector3d p = pose.camera * X;
+    Projection projection;
+    detail::differentiate_projection(pose.lens, p, projection);
+    return corner_derivative(pose, X, p, projection);
+}
+
+/// corner_derivative() and its rate while the flange moves by `direction`.
+std::pair<CornerDerivative, CornerDerivative> corner_rate(const CameraPose& pose, const Vector3d& X,
+                                                          const Twist& direction) {
     const Vector3d p = pose.camera * X;
     const Matrix3d& R = pose.camera.linear();
     const Matrix3d W = cross_matrix(direction.head<3>());
@@ -103,9 +83,9 @@ CornerDerivative corner_rate(const CameraPose& pose, const Vector3d& X, const Tw
         pose.is_on_flange ? Vector3d(-R * velocity_of(X, direction)) : velocity_of(p, direction);
     const Matrix3d R_rate = pose.is_on_flange ? Matrix3d(-R * W) : Matrix3d(W * R);
     Projection projection;
-    detail::differentiate_projection(pose.lens, p, projection);
+    detail::ProjectionRate rate;
+    detail::differentiate_projection_along(pose.lens, p, velocity, projection, rate);
     const auto& P = projection.by_point;
-    const ProjectionRate rate = projection_rate(pose.lens, p, velocity);
     const auto& P_rate = rate.by_point;
     CornerDerivative corner;
     corner.by_values = rate.by_values;
@@ -125,7 +105,7 @@ CornerDerivative corner_rate(const CameraPose& pose, const Vector3d& X, const Tw
         by_arm_rate = by_place_rate * cross_matrix(pose.place.linear() * X);
     }
     corner.by_place << by_place_rate, -by_arm_rate * pose.turn_rate;
-    return corner;
+    return {corner_derivative(pose, X, p, projection), corner};
 }
 
 }  // namespace
@@ -176,8 +156,7 @@ void CameraSensor::differentiate_along(const Isometry3d& world_from_flange,
     const Index own = J_rate.cols() - twists.cols();
     for (Index k = 0; k < target_count(); ++k) {
         const Vector3d X = pose.factor * setup_.corners[static_cast<std::size_t>(k)];
-        const CornerDerivative corner = corner_derivative(pose, X);
-        const CornerDerivative rate = corner_rate(pose, X, direction);
+        const auto [corner, rate] = corner_rate(pose, X, direction);
         auto rows = J_rate.middleRows<2>(2 * k);
         rows.leftCols(twists.cols()).noalias() =
             rate.by_twist.lazyProduct(twists) + corner.by_twist.lazyProduct(twist_rates);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/elementary.hpp"
+#include "differences.hpp"
 #include "posewise/core/errors.hpp"
 
 namespace posewise {
@@ -77,6 +78,83 @@ Bent bend_fisheye(const Lens& lens, const Vector2d& d) {
     return bent;
 }
 
+/// How by_direction and by_coefficients of a Bent change while the direction moves.
+struct BentRate {
+    Eigen::Matrix2d by_direction = Eigen::Matrix2d::Zero();
+    detail::ByValues by_coefficients;
+};
+
+BentRate brown_conrady_rate(const Lens& lens, const Vector2d& d, const Vector2d& d_rate) {
+    const auto k = [&](Index i) { return lens.coefficient(i); };
+    const double s = d.squaredNorm(), s_rate = 2 * d.dot(d_rate);
+    const double above = 1 + s * (k(0) + s * (k(1) + s * k(4)));
+    const double below = 1 + s * (k(5) + s * (k(6) + s * k(7)));
+    const double above_1 = k(0) + s * (2 * k(1) + s * 3 * k(4));  // by s
+    const double below_1 = k(5) + s * (2 * k(6) + s * 3 * k(7));
+    const double above_2 = 2 * k(1) + s * 6 * k(4);
+    const double below_2 = 2 * k(6) + s * 6 * k(7);
+    const double radial = above / below;
+    const double radial_1 = (above_1 - radial * below_1) / below;
+    const double radial_2 = (above_2 - 2 * radial_1 * below_1 - radial * below_2) / below;
+    const Eigen::Matrix2d outer = d * d_rate.transpose();
+    const double p1 = k(2), p2 = k(3);
+    const double x = d_rate.x(), y = d_rate.y();
+    Eigen::Matrix2d tangential;
+    tangential << 2 * p1 * y + 6 * p2 * x, 2 * p1 * x + 2 * p2 * y, 2 * p1 * x + 2 * p2 * y,
+        6 * p1 * y + 2 * p2 * x;
+    BentRate rate;
+    rate.by_direction = radial_1 * s_rate * Eigen::Matrix2d::Identity() +
+                        2 * radial_2 * s_rate * d * d.transpose() +
+                        2 * radial_1 * (outer + outer.transpose()) + tangential;
+    Eigen::Matrix<double, 2, 8> all;
+    // Of f(s) d, where f is s^n / below or -radial s^n / below.
+    const auto set = [&](Index column, int n, double factor, double factor_1) {
+        const double power = std::pow(s, n), power_1 = n * std::pow(s, n - 1);
+        const double f = factor * power / below;
+        const double f_1 = (factor_1 * power + factor * power_1 - f * below_1) / below;
+        all.col(column) = f_1 * s_rate * d + f * d_rate;
+    };
+    for (int n = 1; n <= 3; ++n) {
+        set(n == 3 ? 4 : n - 1, n, 1, 0);
+        set(4 + n, n, -radial, -radial_1);
+    }
+    all.col(2) << 2 * (x * d.y() + d.x() * y), s_rate + 4 * d.y() * y;
+    all.col(3) << s_rate + 4 * d.x() * x, 2 * (x * d.y() + d.x() * y);
+    rate.by_coefficients = all.leftCols(lens.count);
+    return rate;
+}
+
+/// Of g(r) d with g = (bent t) / r, and of t^(2 i + 1) / r d for the coefficients.
+BentRate fisheye_rate(const Lens& lens, const Vector2d& d, const Vector2d& d_rate) {
+    const double* const c = lens.values.data() + 4;
+    BentRate rate;
+    rate.by_coefficients.setZero(2, 4);
+    const double r = d.norm();
+    if (r < 1e-9) return rate;
+    const double r_rate = d.dot(d_rate) / r;
+    const double t = detail::arc_tangent(r, 1), s = t * t, t_1 = 1 / (1 + r * r);
+    const double bent_t = t * (1 + s * (c[0] + s * (c[1] + s * (c[2] + s * c[3]))));
+    const double by_t = 1 + s * (3 * c[0] + s * (5 * c[1] + s * (7 * c[2] + s * 9 * c[3])));
+    const double by_t_1 = t * (6 * c[0] + s * (20 * c[1] + s * (42 * c[2] + s * 72 * c[3])));
+    const double bent_1 = by_t * t_1;  // by r
+    const double bent_2 = (by_t_1 - 2 * r * by_t) * t_1 * t_1;
+    const double g = bent_t / r;
+    const double g_1 = (bent_1 - g) / r;
+    const double g_2 = (bent_2 - 2 * g_1) / r;
+    const Eigen::Matrix2d outer = d * d_rate.transpose();
+    rate.by_direction = g_1 * r_rate * Eigen::Matrix2d::Identity() +
+                        (g_2 - g_1 / r) / r * r_rate * d * d.transpose() +
+                        g_1 / r * (outer + outer.transpose());
+    double power = t;
+    for (Index i = 0; i < 4; ++i) {
+        power *= s;
+        const double f = power / r;
+        const double f_1 = (static_cast<double>(2 * i + 3) * power / t * t_1 - f) / r;
+        rate.by_coefficients.col(i) = f_1 * r_rate * d + f * d_rate;
+    }
+    return rate;
+}
+
 Bent bend_inside(const Lens& lens, const Vector2d& direction) {
     switch (lens.distortion) {
         case Distortion::BrownConrady:
@@ -101,6 +179,33 @@ Bent bend(const Lens& lens, const Vector2d& direction) {
     bent.place *= r / lens.widest;
     bent.by_coefficients *= r / lens.widest;
     return bent;
+}
+
+BentRate bend_rate(const Lens& lens, const Vector2d& direction, const Vector2d& rate) {
+    if (direction.norm() > lens.widest) {
+        BentRate outside;
+        outside.by_coefficients.setZero(2, lens.count);
+        if (rate.isZero(0)) return outside;
+        const double step = 1e-3 * direction.norm() / rate.norm();
+        const MatrixXd slope = detail::slope_at_zero(step, [&](double time) -> MatrixXd {
+            const Bent bent = bend(lens, direction + time * rate);
+            MatrixXd both(2, 2 + lens.count);
+            both << bent.by_direction, bent.by_coefficients;
+            return both;
+        });
+        outside.by_direction = slope.leftCols<2>();
+        outside.by_coefficients = slope.rightCols(lens.count);
+        return outside;
+    }
+    switch (lens.distortion) {
+        case Distortion::BrownConrady:
+            return brown_conrady_rate(lens, direction, rate);
+        case Distortion::Fisheye:
+            return fisheye_rate(lens, direction, rate);
+        case Distortion::None:
+            break;
+    }
+    return {Eigen::Matrix2d::Zero(), detail::ByValues(2, 0)};
 }
 
 Vector2d focal_of(const Lens& lens) { return {lens.values[0], lens.values[1]}; }
@@ -199,6 +304,28 @@ void detail::differentiate_projection(const Lens& lens, const Vector3d& point,
     for (Index k = 0; k < lens.count; ++k) {
         projection.by_values.col(4 + k) = focal.cwiseProduct(bent.by_coefficients.col(k));
     }
+}
+
+void detail::differentiate_projection_along(const Lens& lens, const Vector3d& point,
+                                            const Vector3d& velocity, Projection& projection,
+                                            ProjectionRate& rate) {
+    differentiate_projection(lens, point, projection);
+    const double z = depth_of(point);
+    const double z_rate = z == point.z() ? velocity.z() : 0;
+    const Vector2d direction = point.head<2>() / z;
+    const Vector2d direction_rate = (velocity.head<2>() - z_rate * direction) / z;
+    const BentRate bent_rate = bend_rate(lens, direction, direction_rate);
+    const Vector2d focal = focal_of(lens);
+    const Eigen::Matrix2d by_direction = z * projection.by_point.leftCols<2>();
+    const Eigen::Matrix2d by_direction_rate = focal.asDiagonal() * bent_rate.by_direction;
+    Eigen::Matrix<double, 2, 3> by_point;
+    by_point << Eigen::Matrix2d::Identity() / z, -direction / z;
+    rate.by_point = by_direction_rate * by_point - z_rate / z * projection.by_point;
+    rate.by_point.col(2) -= by_direction * direction_rate / z;
+    rate.by_values.setZero(2, 4 + lens.count);
+    rate.by_values.leftCols<2>() =
+        (by_direction * direction_rate).cwiseQuotient(focal).asDiagonal();
+    rate.by_values.rightCols(lens.count) = focal.asDiagonal() * bent_rate.by_coefficients;
 }
 
 Vector2d detail::place_of(const Lens& lens, const Vector3d& point) {

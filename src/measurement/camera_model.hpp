@@ -32,6 +32,14 @@ struct Projection {
     ByValues by_values;                    ///< by Intrinsics::values()
 };
 void differentiate_projection(const Lens& lens, const Vector3d& point, Projection& projection);
+/// The same, and how the derivatives change while the point moves.
+struct ProjectionRate {
+    Eigen::Matrix<double, 2, 3> by_point;
+    ByValues by_values;
+};
+void differentiate_projection_along(const Lens& lens, const Vector3d& point,
+                                    const Vector3d& velocity, Projection& projection,
+                                    ProjectionRate& rate);
 /// project() in thousands of pixels.
 Vector2d place_of(const Lens& lens, const Vector3d& point);
 

@@ -18,8 +18,11 @@ std::optional<PoseMerit> PoseMerit::make(const Objective& objective, const Matri
     const Eigen::LLT<MatrixXd> cholesky(R);
     if (!is_regular(cholesky, R)) return std::nullopt;
     const MatrixXd W = inverse(cholesky);
+    const Index L = R.rows();
+    const Index whole = whole_columns(L);
+    merit.WK_.setZero(L, merit.is_trace_ ? 2 * whole : whole);
+    merit.WK_.leftCols(L) = W;
     if (is_determinant) {
-        merit.WK_ = W;
         merit.base_ = log_determinant(cholesky);
         if (criterion == Criterion::O1) {
             merit.factor_ = 1 / (2.0 * static_cast<double>(R.rows()));
@@ -27,16 +30,14 @@ std::optional<PoseMerit> PoseMerit::make(const Objective& objective, const Matri
         }
         return merit;
     }
-    const Index L = R.rows();
-    merit.WK_.resize(L, 2 * L);
-    merit.WK_.leftCols(L) = W;
+    auto K = merit.WK_.middleCols(whole, L);
     if (criterion == Criterion::A) {
-        merit.WK_.rightCols(L) = symmetric_gram(W);
+        K = symmetric_gram(W);
         merit.base_ = W.trace();
     } else {
         const MatrixXd& T = objective.mean_test_root;
         const RowMatrixXd TW = transposed_product(T, W);
-        merit.WK_.rightCols(L) = symmetric_gram(TW);
+        K = symmetric_gram(TW);
         merit.base_ = TW.cwiseProduct(T.transpose()).sum();
     }
     if (!std::isfinite(merit.evaluate(block))) return std::nullopt;
@@ -49,7 +50,7 @@ double PoseMerit::evaluate(const RowMatrixXd& B, RowMatrixXd* BZ) const {
         if (BZ != nullptr) BZ->setZero(0, L);
         return is_trace_ ? -logarithm(base_) : factor_ * base_ + shift_;
     }
-    const RowMatrixXd BWK = B * WK_;
+    const RowMatrixXd BWK = transposed_product(B.transpose(), WK_);
     const auto U = BWK.leftCols(L);
     MatrixXd G = U * B.transpose();
     G.diagonal().array() += 1;
@@ -58,7 +59,7 @@ double PoseMerit::evaluate(const RowMatrixXd& B, RowMatrixXd* BZ) const {
         if (BZ != nullptr) *BZ = factor_ * cholesky.solve(U);
         return factor_ * (base_ + log_determinant(cholesky)) + shift_;
     }
-    const auto BK = BWK.rightCols(L);
+    const auto BK = BWK.middleCols(whole_columns(L), L);
     const MatrixXd Q = BK * B.transpose();
     const MatrixXd HQ = cholesky.solve(Q);
     const double trace = base_ - HQ.trace();

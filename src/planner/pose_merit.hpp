@@ -35,7 +35,7 @@ class PoseMerit {
     double base_ = 0;    ///< log det R, or trace C W
     double factor_ = 1;  ///< D and O1: the merit is factor_ log det M + shift_
     double shift_ = 0;
-    MatrixXd WK_;  ///< [W K], or W
+    RowMatrixXd WK_;  ///< [W K], or W, each with zero columns up to whole_columns()
 };
 
 }  // namespace posewise::detail

@@ -66,7 +66,7 @@ void Gains::find_sensitivities() {
     sensitivity_.resize(count);
     for (Index k = 0; k < count; ++k) {
         const auto block = candidates_[shortlist_.members[static_cast<std::size_t>(k)]];
-        sensitivity_[k] = (block * slope).cwiseProduct(block).sum();
+        sensitivity_[k] = transposed_product(block.transpose(), slope).cwiseProduct(block).sum();
     }
 }
 
@@ -144,23 +144,29 @@ MatrixXd Gains::apply_W(const MatrixXd& X) const {
     return transposed_product(inverse_, X) + P_ * (P_.transpose() * X);
 }
 
-double Gains::compute_plainly(Index position, const MatrixXd& W, const MatrixXd& WCW) const {
+double Gains::compute_plainly(Index position, const RowMatrixXd& WK) const {
     const auto block = candidates_[shortlist_.members[static_cast<std::size_t>(position)]];
-    const MatrixXd growth =
-        MatrixXd::Identity(block.rows(), block.rows()) + block * W * block.transpose();
+    const RowMatrixXd BWK = transposed_product(block.transpose(), WK);
+    const MatrixXd growth = MatrixXd::Identity(block.rows(), block.rows()) +
+                            BWK.leftCols(block.cols()) * block.transpose();
     const Eigen::LLT<MatrixXd> cholesky(growth);
-    return is_determinant() ? cholesky.matrixLLT().diagonal().array().square().prod()
-                            : cholesky.solve(block * WCW * block.transpose()).trace();
+    if (is_determinant()) return cholesky.matrixLLT().diagonal().array().square().prod();
+    const auto BK = BWK.middleCols(whole_columns(block.cols()), block.cols());
+    return cholesky.solve(BK * block.transpose()).trace();
 }
 
 VectorXd Gains::compute(const std::vector<Index>& positions) {
     VectorXd result(static_cast<Index>(positions.size()));
     if (shortlist_.lanes.rows == 0) {
-        const MatrixXd W = inverse_ + P_ * P_.transpose();
-        MatrixXd WCW;
-        if (!is_determinant()) WCW = slope_ + P_ * Q_.transpose() + Q_ * P_.transpose();
+        const Index L = inverse_.rows();
+        const Index whole = whole_columns(L);
+        RowMatrixXd WK = RowMatrixXd::Zero(L, is_determinant() ? whole : 2 * whole);
+        WK.leftCols(L) = inverse_ + P_ * P_.transpose();
+        if (!is_determinant()) {
+            WK.middleCols(whole, L) = slope_ + P_ * Q_.transpose() + Q_ * P_.transpose();
+        }
         for (Index k = 0; k < result.size(); ++k) {
-            result[k] = compute_plainly(positions[static_cast<std::size_t>(k)], W, WCW);
+            result[k] = compute_plainly(positions[static_cast<std::size_t>(k)], WK);
         }
         return result;
     }

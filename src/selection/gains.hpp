@@ -52,7 +52,8 @@ class Gains {
     bool is_determinant() const { return C_root_.size() == 0; }
     void find_sensitivities();
     MatrixXd apply_W(const MatrixXd& X) const;
-    double compute_plainly(Index position, const MatrixXd& W, const MatrixXd& WCW) const;
+    /// WK: [W, W C W], each with zero columns up to whole_columns(); W alone for determinants.
+    double compute_plainly(Index position, const RowMatrixXd& WK) const;
 
     const Blocks& candidates_;
     const Shortlist& shortlist_;

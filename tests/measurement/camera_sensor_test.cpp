@@ -6,6 +6,7 @@
 
 #include "../../src/measurement/board_pose.hpp"
 #include "../../src/measurement/camera_model.hpp"
+#include "../../src/measurement/differences.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/constraints.hpp"
 #include "posewise/model/chain.hpp"
@@ -86,6 +87,36 @@ TEST(Camera, HasTheDerivativesOfItsProjectionByPointAndParameters) {
                     return 1e-3 * project(lens.with(x.tail(values.size())), x.head<3>());
                 },
                 both);
+        }
+    }
+}
+
+TEST(Camera, HasTheRatesOfItsDerivativesWhileThePointMoves) {
+    for (const Intrinsics& intrinsics : every_lens()) {
+        for (const double widest : {1e3, 0.3}) {  // also beyond the widest direction
+            Lens lens = lens_of(intrinsics);
+            lens.widest = widest;
+            for (std::uint64_t item = 0; item < 20; ++item) {
+                RandomStream stream(76, item);
+                const Vector3d point = random_vector(stream, 3, 0.6) + Vector3d(0, 0, 1.5);
+                if (std::abs(point.head<2>().norm() / point.z() - widest) < 0.02) continue;
+                const Vector3d velocity = random_vector(stream, 3, 1);
+                const auto derivatives = [&](double time) -> MatrixXd {
+                    Projection projection;
+                    differentiate_projection(lens, point + time * velocity, projection);
+                    MatrixXd both(2, 3 + projection.by_values.cols());
+                    both << projection.by_point, projection.by_values;
+                    return both;
+                };
+                Projection projection;
+                ProjectionRate rate;
+                differentiate_projection_along(lens, point, velocity, projection, rate);
+                MatrixXd both(2, 3 + rate.by_values.cols());
+                both << rate.by_point, rate.by_values;
+                const MatrixXd expected = slope_at_zero(1e-3, derivatives);
+                EXPECT_LE((both - expected).norm(), 1e-8 * (1 + expected.norm()));
+                EXPECT_EQ(projection.place, place_of(lens, point));
+            }
         }
     }
 }
