@@ -5,6 +5,7 @@
 #include "posewise/core/threads.hpp"
 #include "posewise/core/version.hpp"
 #include "posewise/io/blocks_file.hpp"
+#include "posewise/io/camera_places.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/documents.hpp"
 #include "posewise/io/measurements_file.hpp"

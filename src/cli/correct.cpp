@@ -171,8 +171,9 @@ void warn_of_others(const CorrectArguments& arguments, const io::TargetProgram& 
     print_warning(fmt::format(
         "{}:{}: is not corrected, {}: no joint values of all joints, or added to other targets",
         arguments.poses, program.others.front(),
-        program.others.size() == 1
-            ? "the only one"
+        program.others.size() == 1 ? "the only one"
+        : program.others.size() == 2
+            ? std::string("nor is one more line")
             : fmt::format("nor are {} more lines", program.others.size() - 1)));
 }
 

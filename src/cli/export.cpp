@@ -23,6 +23,7 @@ Example:
   posewise export campaign.yaml estimate.json --dh calibrated.yaml
   posewise export campaign.yaml estimate.json --ur-kinematics my_robot_calibration.yaml
   posewise export campaign.yaml estimate.json --urdf calibrated.urdf --map map.c --geometry estimate
+  posewise export campaign.yaml estimate.json --camera camera.yaml
 
 The estimate is what calibrate --out wrote. Every file is read back before it takes its place: its
 flange must be within 1e-9 m of the robot's at 1000 configurations (of --ur-kinematics within 1e-6 m
@@ -38,6 +39,10 @@ a program that adds the other errors itself.
 --map writes these other errors as corrections of joint values: a C source with the function
 posewise_joints_to_send(), or its table (.csv). The file says how it is used; what is left at random
 configurations is printed and stands in it.
+
+--camera writes where a camera found camera and board: a file of OpenCV's with its intrinsic
+parameters and both frames as matrices (.yaml), or fixed joints for a URDF (.urdf). The arguments of
+ROS 2's static_transform_publisher are printed.
 
 The URDF is the one the campaign's robot comes from, and stays as it is (names, order, comments,
 layout) but for the numbers of joint origins between base link and tip link. The base as the
@@ -92,6 +97,7 @@ io::ExportedRobot make_robot(const ExportArguments& arguments, const io::Campaig
             return ur_frames(robot.written().robot, robot.written().errors);
         });
     }
+    if (!paths.camera.empty()) robot.camera = io::camera_places(file, found);
     if (!paths.map.empty()) {
         robot.map = compute_from(arguments.estimate, [&] { return correction_map(file, found); });
     }
@@ -114,6 +120,7 @@ void write_files(const ExportPaths& paths, const io::CampaignFile& file, io::Exp
         add(paths.ur_kinematics,
             io::write_ur_kinematics(paths.ur_kinematics, title, *robot.frames, chain, errors));
     }
+    if (robot.camera) io::write_camera(paths.camera, file, *robot.camera);
     if (robot.map) io::write_correction_map(paths.map, file.name, *robot.map);
 }
 
@@ -121,9 +128,10 @@ void export_estimate(const ExportArguments& arguments, const CommonOptions& comm
     const ExportPaths& paths = arguments.paths;
     const bool has_geometry =
         !(paths.urdf.empty() && paths.dh.empty() && paths.ur_kinematics.empty());
-    if (!has_geometry && paths.map.empty()) {
-        throw CLI::RequiredError("--urdf, --dh, --ur-kinematics or --map");
+    if (!has_geometry && paths.map.empty() && paths.camera.empty()) {
+        throw CLI::RequiredError("--urdf, --dh, --ur-kinematics, --map or --camera");
     }
+    if (!paths.camera.empty()) io::check_camera_path(paths.camera);
     if (!paths.map.empty()) {
         io::check_map_path(paths.map);
         if (has_geometry && arguments.geometry == "nearest") {
@@ -134,11 +142,16 @@ void export_estimate(const ExportArguments& arguments, const CommonOptions& comm
     }
     const io::CampaignFile file = io::read_campaign(arguments.campaign);
     check_outputs({&file}, {arguments.estimate, arguments.workspace},
-                  {paths.urdf, paths.dh, paths.ur_kinematics, paths.map}, common);
+                  {paths.urdf, paths.dh, paths.ur_kinematics, paths.map, paths.camera}, common);
     if (!paths.urdf.empty() && !file.urdf) {
         throw input_error_at({arguments.campaign},
                              "has a robot that does not come from a URDF; only such a one can go "
                              "into one (--dh takes any)");
+    }
+    if (!paths.camera.empty() && !io::camera_places(file, file.nominal)) {
+        throw input_error_at({arguments.campaign},
+                             "has no camera; --camera is for sensor.kind camera, or poses of a "
+                             "board that a camera sees");
     }
     const Parameters found =
         read_usable_estimate(arguments.estimate, file, arguments.is_forced).parameters;
@@ -166,6 +179,8 @@ void add_export(CLI::App& program, const CommonOptions& common) {
              "Write it as kinematics of ur_description (YAML)");
     add_file("--map", arguments->paths.map,
              "Write what depends on the configuration for a cell's own software: .c or .csv");
+    add_file("--camera", arguments->paths.camera,
+             "Write where camera and board are: .yaml (OpenCV) or .urdf (fixed joints)");
     command
         ->add_option("--geometry", arguments->geometry,
                      "Where errors depend on the configuration: nearest (least squares over the "

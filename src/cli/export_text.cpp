@@ -127,6 +127,16 @@ void print_map(const CorrectionMap& map, const io::CampaignFile& file, const std
                   table);
 }
 
+void print_camera(const io::CameraPlaces& places, const io::CampaignFile& file,
+                  const std::string& path) {
+    print(fmt::format("{}: camera and board{} are in {}\n", file.name,
+                      places.intrinsics ? ", with the intrinsic parameters," : "",
+                      detail::escape_controls(path)));
+    print(fmt::format("\ncamera in the {} frame: {}\nROS 2: ros2 run tf2_ros {}\n",
+                      places.is_on_flange ? "flange" : "base", describe_frame(places.camera),
+                      io::static_transform(file, places)));
+}
+
 }  // namespace
 
 void warn_of(const io::ExportedRobot& robot, const ExportPaths& paths) {
@@ -145,6 +155,7 @@ void print_export(const io::ExportedRobot& robot, const io::CampaignFile& file,
     if (!robot.dh.empty()) print_dh(robot.dh, file, paths.dh);
     if (robot.frames) print_frames(file, paths.ur_kinematics);
     if (robot.map) print_map(*robot.map, file, paths.map);
+    if (robot.camera) print_camera(*robot.camera, file, paths.camera);
     print_loss(robot);
     print_places(robot.written(), file.urdf && robot.urdf ? "where the instrument sees base link " +
                                                                 detail::quote(file.urdf->base_link)

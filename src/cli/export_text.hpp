@@ -13,6 +13,7 @@ struct ExportPaths {
     std::string dh;
     std::string ur_kinematics;
     std::string map;
+    std::string camera;
 };
 
 /// Warnings about numbers that are easily taken for something else.

@@ -218,9 +218,23 @@ Footer split_footer(const CLI::App& command) {
     return footer;
 }
 
+}  // namespace
+
+std::vector<const CLI::Option*> options_of(const CLI::App& command) {
+    std::vector<const CLI::Option*> options = command.get_options();
+    const auto is_group = [](const CLI::App* part) { return part->get_name().empty(); };
+    for (const CLI::App* const group : command.get_subcommands(is_group)) {
+        const std::vector<const CLI::Option*> own = group->get_options();
+        options.insert(options.end(), own.begin(), own.end());
+    }
+    return options;
+}
+
+namespace {
+
 std::string usage_of(const CLI::App& command) {
     std::string usage = "posewise " + command.get_name() + " [OPTIONS]";
-    for (const CLI::Option* const one : command.get_options()) {
+    for (const CLI::Option* const one : options_of(command)) {
         if (!one->get_positional()) continue;
         const std::string name = one->get_name(true);
         usage += one->get_required() ? ' ' + name : " [" + name + ']';
@@ -245,7 +259,7 @@ std::string examples_of(const Footer& footer, std::size_t most) {
 template <typename Describe>
 std::string list_group(const CLI::App& command, Group group, const Describe& describe) {
     std::string text;
-    for (const CLI::Option* const option : command.get_options()) {
+    for (const CLI::Option* const option : options_of(command)) {
         if (group_of(*option) == group) text += describe(*option);
     }
     return text.empty() ? ""
@@ -268,7 +282,7 @@ std::string brief_help_of(const CLI::App& command) {
         text += list_group(command, static_cast<Group>(group), &brief_line);
     }
     std::string others;
-    for (const CLI::Option* const option : command.get_options()) {
+    for (const CLI::Option* const option : options_of(command)) {
         if (group_of(*option) == Rare) others += " --" + option->get_lnames().front();
     }
     if (!others.empty()) text += "\nAlso: " + wrap(others.substr(1), 6) + '\n';

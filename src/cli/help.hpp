@@ -14,6 +14,9 @@ std::shared_ptr<CLI::FormatterBase> make_brief_help();
 /// What `posewise help COMMAND` prints.
 std::string full_help_of(const CLI::App& command);
 
+/// Also those of its groups of which one is asked for.
+std::vector<const CLI::Option*> options_of(const CLI::App& command);
+
 std::vector<const CLI::App*> commands_of(const CLI::App& program);
 
 /// `posewise help [TOPIC]` and `posewise completion SHELL`.

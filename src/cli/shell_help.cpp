@@ -17,7 +17,7 @@ std::string bash_completion(const CLI::App& program) {
     for (const CLI::App* const command : commands_of(program)) {
         commands += ' ' + command->get_name();
         std::string options;
-        for (const CLI::Option* const option : command->get_options()) {
+        for (const CLI::Option* const option : options_of(*command)) {
             for (const std::string& name : option->get_lnames()) options += " --" + name;
         }
         cases += fmt::format("    {}) words=\"{}\" ;;\n", command->get_name(), options.substr(1));

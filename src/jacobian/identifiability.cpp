@@ -46,13 +46,15 @@ std::vector<Index> make_priority(const Campaign& campaign) {
     return priority;
 }
 
-/// Numbers of the robot that are rounded blur its geometry, not the shapes of terms.
+/// Numbers of the robot that are rounded blur its geometry, not the shapes of terms or of a lens.
 VectorXd least_shares_of(const Campaign& campaign) {
     VectorXd shares = VectorXd::Constant(parameter_count(campaign), detail::least_visible);
     for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
         if (campaign.robot.parameter_term(k) == nullptr) continue;
         shares[base_parameter_count(campaign) + k] = 1e-12;
     }
+    if (campaign.sensor->has_pixels())
+        shares.tail(campaign.nominal.sensor.size()).setConstant(1e-12);
     return shares;
 }
 

@@ -227,7 +227,7 @@ class Bundle {
             A.diagonal() *= 1 + damping;
             const Eigen::LDLT<MatrixXd> factor(A);
             const MatrixXd B = e.by_pose.transpose() * by_values;
-            inverse_by_values.push_back(factor.solve(B));
+            inverse_by_values.push_back(count > 0 ? MatrixXd(factor.solve(B)) : B);
             own.push_back(factor.solve(e.by_pose.transpose() * e.residuals));
             MatrixXd C = by_values.transpose() * by_values;
             C.diagonal() *= 1 + damping;

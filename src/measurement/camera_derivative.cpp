@@ -1,21 +1,14 @@
+#include <algorithm>
 #include <utility>
 
-#include "camera_model.hpp"
+#include "camera_view.hpp"
 #include "posewise/model/chain.hpp"
 
 namespace posewise {
-namespace detail {
+namespace {
 
-/// What a camera's pose is and how what it sees moves, the same for every corner.
-struct CameraPose {
-    bool is_on_flange;
-    Isometry3d place;   ///< of what is on the flange, in its frame
-    Isometry3d camera;  ///< camera_from_board
-    Matrix3d flange;    ///< the flange's axes in the world
-    Lens lens;
-    double factor;       ///< of the board's size
-    Matrix3d turn_rate;  ///< of the place, by its rotation vector
-};
+using detail::BoardFromCamera;
+using detail::Projection;
 
 /// Derivatives of one corner's place in the image: by the flange's motion, by position and rotation
 /// vector of what is on it, and by the board's size.
@@ -23,16 +16,8 @@ struct CornerDerivative {
     Eigen::Matrix<double, 2, 6> by_twist;
     Eigen::Matrix<double, 2, 6> by_place;
     Vector2d by_scale;
-    ByValues by_values;
+    detail::ByValues by_values;
 };
-
-}  // namespace detail
-
-namespace {
-
-using detail::CameraPose;
-using detail::CornerDerivative;
-using detail::Projection;
 
 /// [-x^, I], by which a point x moves with a twist.
 Eigen::Matrix<double, 3, 6> velocity_by_twist(const Vector3d& x) {
@@ -44,8 +29,8 @@ Eigen::Matrix<double, 3, 6> velocity_by_twist(const Vector3d& x) {
 /// With P the derivative by the point p = camera X: while the flange moves by a twist (w, v), a
 /// board on it moves by v + w x p; a camera on it sees the board move by -R (v + w x X), with its
 /// axes R.
-CornerDerivative corner_derivative(const CameraPose& pose, const Vector3d& X, const Vector3d& p,
-                                   const Projection& projection) {
+CornerDerivative corner_derivative(const BoardFromCamera& pose, const Vector3d& X,
+                                   const Vector3d& p, const Projection& projection) {
     const auto& P = projection.by_point;
     const Matrix3d& R = pose.camera.linear();
     CornerDerivative corner;
@@ -66,7 +51,7 @@ CornerDerivative corner_derivative(const CameraPose& pose, const Vector3d& X, co
     return corner;
 }
 
-CornerDerivative corner_derivative(const CameraPose& pose, const Vector3d& X) {
+CornerDerivative corner_derivative(const BoardFromCamera& pose, const Vector3d& X) {
     const Vector3d p = pose.camera * X;
     Projection projection;
     detail::differentiate_projection(pose.lens, p, projection);
@@ -74,7 +59,8 @@ CornerDerivative corner_derivative(const CameraPose& pose, const Vector3d& X) {
 }
 
 /// corner_derivative() and its rate while the flange moves by `direction`.
-std::pair<CornerDerivative, CornerDerivative> corner_rate(const CameraPose& pose, const Vector3d& X,
+std::pair<CornerDerivative, CornerDerivative> corner_rate(const BoardFromCamera& pose,
+                                                          const Vector3d& X,
                                                           const Twist& direction) {
     const Vector3d p = pose.camera * X;
     const Matrix3d& R = pose.camera.linear();
@@ -108,43 +94,53 @@ std::pair<CornerDerivative, CornerDerivative> corner_rate(const CameraPose& pose
     return {corner_derivative(pose, X, p, projection), corner};
 }
 
-}  // namespace
-
-CameraPose CameraSensor::pose_with(const Isometry3d& world_from_flange,
-                                   const VectorXd& unknowns) const {
-    const Matrix3d turn_rate =
-        has_unknown_place() ? rotation_vector_rate(unknowns.segment<3>(3)) : Matrix3d::Zero();
-    return {setup_.is_on_flange,
-            place(unknowns),
-            camera_from_board(world_from_flange, unknowns),
-            world_from_flange.linear(),
-            lens_with(unknowns),
-            board_factor(unknowns),
-            turn_rate};
+/// The columns of what is unknown: place, intrinsic parameters, size.
+void set_unknowns(const CornerDerivative& corner, const std::vector<Index>& intrinsics,
+                  Eigen::Ref<RowMatrixXd> rows) {
+    const auto count = static_cast<Index>(intrinsics.size());
+    const Index place = rows.cols() - count >= 6 ? 6 : 0;
+    if (place > 0) rows.leftCols<6>() = corner.by_place;
+    for (Index i = 0; i < count; ++i) {
+        rows.col(place + i) = corner.by_values.col(intrinsics[static_cast<std::size_t>(i)]);
+    }
+    if (rows.cols() > place + count) rows.rightCols<1>() = corner.by_scale;
 }
 
-void CameraSensor::set_unknowns(const detail::CornerDerivative& corner,
-                                Eigen::Ref<RowMatrixXd> rows) const {
-    if (has_unknown_place()) rows.leftCols<6>() = corner.by_place;
-    for (Index i = 0; i < intrinsics_count(); ++i) {
-        rows.col(place_count() + i) =
-            corner.by_values.col(unknown_intrinsics_[static_cast<std::size_t>(i)]);
+}  // namespace
+
+BoardFromCamera detail::board_from_camera(const CameraSensor& sensor,
+                                          const Isometry3d& world_from_flange,
+                                          const VectorXd& unknowns) {
+    const CameraSetup& setup = sensor.setup();
+    Lens lens = lens_of(setup.intrinsics);
+    const bool is_polynomial = lens.distortion == Distortion::BrownConrady;
+    lens.widest = is_polynomial ? std::min(sensor.widest(), 3.0) : sensor.widest();
+    Index next = setup.known_place ? 0 : 6;
+    for (const Index k : sensor.unknown_intrinsics()) {
+        lens.values[static_cast<std::size_t>(k)] = unknowns[next++];
     }
-    if (setup_.is_scale_unknown) rows.rightCols<1>() = corner.by_scale;
+    return {
+        setup.is_on_flange,
+        sensor.place(unknowns),
+        sensor.camera_from_board(world_from_flange, unknowns),
+        world_from_flange.linear(),
+        lens,
+        sensor.board_factor(unknowns),
+        setup.known_place ? Matrix3d::Zero().eval() : rotation_vector_rate(unknowns.segment<3>(3))};
 }
 
 void CameraSensor::differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                                  const VectorXd& unknowns,
                                  Eigen::Ref<RowMatrixXd> J_measured_parameters) const {
     auto& J = J_measured_parameters;
-    const CameraPose pose = pose_with(world_from_flange, unknowns);
+    const BoardFromCamera pose = detail::board_from_camera(*this, world_from_flange, unknowns);
     const Index own = J.cols() - twists.cols();
     for (Index k = 0; k < target_count(); ++k) {
         const Vector3d X = pose.factor * setup_.corners[static_cast<std::size_t>(k)];
         const CornerDerivative corner = corner_derivative(pose, X);
         auto rows = J.middleRows<2>(2 * k);
         rows.leftCols(twists.cols()).noalias() = corner.by_twist.lazyProduct(twists);
-        if (own > 0) set_unknowns(corner, rows.rightCols(own));
+        if (own > 0) set_unknowns(corner, unknown_intrinsics_, rows.rightCols(own));
     }
 }
 
@@ -152,7 +148,7 @@ void CameraSensor::differentiate_along(const Isometry3d& world_from_flange,
                                        const TwistMatrix& twists, const Twist& direction,
                                        const TwistMatrix& twist_rates, const VectorXd& unknowns,
                                        Eigen::Ref<RowMatrixXd> J_rate) const {
-    const CameraPose pose = pose_with(world_from_flange, unknowns);
+    const BoardFromCamera pose = detail::board_from_camera(*this, world_from_flange, unknowns);
     const Index own = J_rate.cols() - twists.cols();
     for (Index k = 0; k < target_count(); ++k) {
         const Vector3d X = pose.factor * setup_.corners[static_cast<std::size_t>(k)];
@@ -160,7 +156,7 @@ void CameraSensor::differentiate_along(const Isometry3d& world_from_flange,
         auto rows = J_rate.middleRows<2>(2 * k);
         rows.leftCols(twists.cols()).noalias() =
             rate.by_twist.lazyProduct(twists) + corner.by_twist.lazyProduct(twist_rates);
-        if (own > 0) set_unknowns(rate, rows.rightCols(own));
+        if (own > 0) set_unknowns(rate, unknown_intrinsics_, rows.rightCols(own));
     }
 }
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "board_pose.hpp"
-#include "camera_model.hpp"
+#include "camera_view.hpp"
 #include "core/format.hpp"
 #include "noise_words.hpp"
 #include "posewise/core/errors.hpp"
@@ -83,17 +83,6 @@ Intrinsics CameraSensor::intrinsics(const VectorXd& unknowns) const {
     return setup_.intrinsics.with(values);
 }
 
-detail::Lens CameraSensor::lens_with(const VectorXd& unknowns) const {
-    detail::Lens lens = detail::lens_of(setup_.intrinsics);
-    const bool is_polynomial = lens.distortion == Distortion::BrownConrady;
-    lens.widest = is_polynomial ? std::min(widest_, 3.0) : widest_;
-    Index next = place_count();
-    for (const Index k : unknown_intrinsics_) {
-        lens.values[static_cast<std::size_t>(k)] = unknowns[next++];
-    }
-    return lens;
-}
-
 Isometry3d CameraSensor::camera_from_board(const Isometry3d& world_from_flange,
                                            const VectorXd& unknowns) const {
     const Isometry3d world_from_place = world_from_flange * place(unknowns);
@@ -157,12 +146,10 @@ std::vector<const AmountUnits*> CameraSensor::unknown_units() const {
 
 void CameraSensor::predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                            Eigen::Ref<VectorXd> observation) const {
-    const Isometry3d board = camera_from_board(world_from_flange, unknowns);
-    const detail::Lens lens = lens_with(unknowns);
-    const double factor = board_factor(unknowns);
+    const auto view = detail::board_from_camera(*this, world_from_flange, unknowns);
     for (Index k = 0; k < target_count(); ++k) {
-        observation.segment<2>(2 * k) =
-            detail::place_of(lens, board * (factor * setup_.corners[static_cast<std::size_t>(k)]));
+        observation.segment<2>(2 * k) = detail::place_of(
+            view.lens, view.camera * (view.factor * setup_.corners[static_cast<std::size_t>(k)]));
     }
 }
 
@@ -175,16 +162,16 @@ void CameraSensor::covariance(const Isometry3d&, const VectorXd&,
 
 void CameraSensor::view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                                    Eigen::Ref<VectorXd> clearances) const {
-    const Isometry3d board = camera_from_board(world_from_flange, unknowns);
-    const detail::Lens lens = lens_with(unknowns);
+    const auto view = detail::board_from_camera(*this, world_from_flange, unknowns);
+    const detail::Lens& lens = view.lens;
     const double widest = unknown_intrinsics_.empty() ? widest_ : detail::widest_tangent(lens);
-    const double factor = board_factor(unknowns);
     for (Index k = 0; k < target_count(); ++k) {
-        const Vector3d p = board * (factor * setup_.corners[static_cast<std::size_t>(k)]);
+        const Vector3d p =
+            view.camera * (view.factor * setup_.corners[static_cast<std::size_t>(k)]);
         const double to_side = std::atan2(p.head<2>().norm(), p.z());
         double least = std::atan(widest) - to_side;
         if (normal_) {
-            const Vector3d normal = board.linear() * *normal_;
+            const Vector3d normal = view.camera.linear() * *normal_;
             const double tilt = std::atan2(normal.cross(-p).norm(), normal.dot(-p));
             least = std::min(least, setup_.view.most_tilt - tilt);
         }

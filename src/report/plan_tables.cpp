@@ -159,17 +159,23 @@ std::string describe_made_up(const Campaign& campaign) {
     return "base not stated, nothing depends on it" + (targets.empty() ? "" : "; " + targets);
 }
 
-/// "q1_rad" taken apart.
+/// "q1_rad" taken apart; a number without unit has none at its end.
 struct Column {
     std::string name;
-    const AmountUnits& units;
+    const AmountUnits* units = &plain_units;
 
-    explicit Column(const std::string& text)
-        : name(text.substr(0, text.rfind('_'))), units(units_of(text.ends_with("_rad"))) {}
+    explicit Column(const std::string& text) : name(text) {
+        for (const AmountUnits* const one : {&length_units, &angle_units, &pixel_units}) {
+            const std::string end = fmt::format("_{}", one->si);
+            if (!text.ends_with(end)) continue;
+            name.resize(text.size() - end.size());
+            units = one;
+        }
+    }
 };
 
 std::string format_joint(const std::string& column, double value) {
-    return detail::format_fixed(Column(column).units.to_reading(value), 2);
+    return detail::format_fixed(Column(column).units->to_reading(value), 2);
 }
 
 std::string describe_way(const Plan& plan, const PlannedPose& pose) {
@@ -206,6 +212,23 @@ std::string describe_cell_doubts(const Plan& plan) {
 
 /// What each pose shows is a number of a target, or the name of what it touches.
 /// Those to verify have no value.
+/// Which targets, by number or name; of a board's many corners how many.
+std::string describe_seen(const Planning& planning, const PlannedPose& pose) {
+    constexpr Index many = 12;
+    const Sensor& sensor = *planning.campaign.sensor;
+    if (sensor.target_count() > many) {
+        return fmt::format("{} of {}", pose.targets.size(), sensor.target_count());
+    }
+    const std::vector<std::string> contacts = sensor.contact_names();
+    std::string seen;
+    for (const Index target : pose.targets) {
+        seen += (seen.empty() ? "" : " ") + (contacts.empty()
+                                                 ? std::to_string(target + 1)
+                                                 : contacts[static_cast<std::size_t>(target)]);
+    }
+    return seen;
+}
+
 Table pose_table(const Planning& planning, const std::vector<PlannedPose>& poses) {
     const Plan& plan = planning.plan;
     const bool has_values = &poses == &plan.poses;
@@ -213,7 +236,7 @@ Table pose_table(const Planning& planning, const std::vector<PlannedPose>& poses
     Table table{{"pose"}, {}};
     for (const std::string& text : plan.columns) {
         const Column column(text);
-        table.header.push_back(fmt::format("{}/{}", column.name, column.units.reading));
+        table.header.push_back(fmt::format("{}/{}", column.name, column.units->reading));
     }
     if (has_values) table.header.emplace_back("value/mm");
     table.header.insert(table.header.end(),
@@ -228,14 +251,8 @@ Table pose_table(const Planning& planning, const std::vector<PlannedPose>& poses
             row.push_back(
                 format_joint(plan.columns[static_cast<std::size_t>(j)], pose.configuration[j]));
         }
-        std::string seen;
-        for (const Index target : pose.targets) {
-            seen += (seen.empty() ? "" : " ") + (contacts.empty()
-                                                     ? std::to_string(target + 1)
-                                                     : contacts[static_cast<std::size_t>(target)]);
-        }
         if (has_values) row.push_back(format_pose_value(planning, i));
-        row.insert(row.end(), {seen, describe_way(plan, pose)});
+        row.insert(row.end(), {describe_seen(planning, pose), describe_way(plan, pose)});
         if (has_clearance) row.push_back(describe_nearest(pose));
         table.rows.push_back(std::move(row));
     }
@@ -381,7 +398,7 @@ std::string format_deviations(const Plan& plan) {
     for (const NamedNumber& one : plan.standard_deviations) {
         const Column column(one.name);
         table.rows.push_back({column.name, detail::format_fixed(mm_per_m * one.value, 4),
-                              std::string(column.units.error)});
+                              std::string(column.units->error)});
     }
     return format_section("Expected standard deviation of each parameter", table);
 }

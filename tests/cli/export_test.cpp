@@ -100,5 +100,76 @@ sensor: {kind: points, sigma_mm: 0.01, targets: {position_mm: [[0, 30, 50], [40,
     EXPECT_NE(nearest.err.find("add --geometry estimate"), std::string::npos) << nearest.err;
 }
 
+class ExportOfACamera : public Export {
+  protected:
+    void calibrate_camera(const std::string& camera) const {
+        write_text("poses.csv", R"(config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg
+p1,0,-90,90,0,20,0
+p2,20,-100,95,10,-15,30
+p3,-25,-80,70,-10,25,-40
+p4,10,-95,100,20,10,80
+p5,-10,-85,85,-25,-20,-80
+p6,30,-90,80,15,30,10
+p7,-30,-100,100,-15,5,120
+p8,5,-80,95,25,-30,60
+)");
+        write_text("eye.yaml", R"(name: eye
+robot:
+  errors: none
+  joints: {q1: {limits_deg: [-170, 170]}, q2: {limits_deg: [-170, 170]}, q3: {limits_deg: [-170, 170]},
+    q4: {limits_deg: [-170, 170]}, q5: {limits_deg: [-170, 170]}, q6: {limits_deg: [-170, 170]}}
+  elements: [Rz q1, Tz 300 mm, Ry q2, Tz 400 mm, Ry q3, Tx 300 mm, Rx q4, Ry q5, Rx q6, Tx 80 mm, Ry 90 deg]
+sensor:
+  kind: poses
+  camera: )" + camera + R"(
+  sigma_mm: 0.1
+  sigma_orientation_mrad: 0.3
+  tool: {position_mm: [10, 20, 60], rpy_deg: [5, 0, 90]}
+base: {position_mm: [100, 200, 1500], rpy_deg: [170, 10, 80]}
+)");
+        run_well("simulate eye.yaml --configurations poses.csv -o m.csv");
+        run_well("calibrate eye.yaml -m m.csv --folds 0 -o e.json");
+    }
+};
+
+TEST_F(ExportOfACamera, WritesFramesForOpenCvAndForAUrdf) {
+    for (const bool is_on_flange : {true, false}) {
+        calibrate_camera(is_on_flange ? "flange" : "fixed");
+        const auto document =
+            nlohmann::json::parse(run_well("export eye.yaml e.json --camera camera.yaml --json"));
+        const std::string yaml = text_of("camera.yaml");
+        EXPECT_EQ(yaml.rfind("%YAML:1.0\n---\n", 0), 0U) << yaml;
+        EXPECT_NE(yaml.find(is_on_flange ? "flange_from_camera" : "base_from_camera"),
+                  std::string::npos);
+        EXPECT_EQ(document.at("camera").at("on"), is_on_flange ? "flange" : "base");
+        // The camera is the tool, or what sees the base.
+        const auto& place = document.at("camera").at("place").at("position_m");
+        const auto& board = document.at("camera").at("board").at("position_m");
+        EXPECT_EQ(document.at("tool").at("position_m"), is_on_flange ? place : board);
+        const std::string text = run_well("export eye.yaml e.json --camera camera.urdf");
+        EXPECT_NE(text.find("static_transform_publisher --x "), std::string::npos) << text;
+        const std::string urdf = text_of("camera.urdf");
+        const std::string parent = is_on_flange ? "tool0" : "base_link";
+        EXPECT_NE(urdf.find("<parent link=\"" + parent +
+                            "\"/>\n    <child link=\"camera_optical_frame\"/>"),
+                  std::string::npos)
+            << urdf;
+    }
+}
+
+TEST_F(ExportOfACamera, IsRefusedWithoutACameraOrAnEnding) {
+    calibrate_camera("flange");
+    expect_input_error("export eye.yaml e.json --camera camera.txt", "must end in .yaml");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "camera.txt"));
+    calibrate(R"(name: points
+robot:
+  errors: none
+  joints: {q1: {limits_deg: [-90, 90]}, q2: {limits_deg: [-90, 90]}, q3: {limits_deg: [-90, 90]}}
+  elements: [Rz q1, Tx 300 mm, Ry q2, Tx 500 mm, Ry q3, Tz 300 mm]
+sensor: {kind: points, sigma_mm: 0.01, targets: {position_mm: [[100, 0, 0]]}}
+)" + base_);
+    expect_input_error("export c.yaml e.json --camera camera.yaml", "has no camera");
+}
+
 }  // namespace
 }  // namespace posewise::testing

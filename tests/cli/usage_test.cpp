@@ -43,6 +43,9 @@ TEST_F(Usage, HelpExplainsEveryOptionAndEverySectionOfTheManual) {
     EXPECT_NE(topics.find("\n  plan "), std::string::npos) << topics;
     EXPECT_NE(topics.find("\n  cell "), std::string::npos) << topics;
     EXPECT_NE(run_well("help plan").find("\n  --drift-mrad X\n"), std::string::npos);
+    // Options of which one is asked for.
+    EXPECT_NE(run_well("simulate --help").find("\n  -k, --poses "), std::string::npos);
+    EXPECT_NE(run_well("help select").find("--candidates "), std::string::npos);
     EXPECT_EQ(run_well("help cell").rfind("## cell\n", 0), 0u);
     const Outcome unknown = run("help plans");
     EXPECT_EQ(unknown.code, 2);
@@ -120,7 +123,7 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
     {"plan a.yaml --plan p.json --drop p1,",
      "--drop: is 'p1,'; must be names separated by commas, none empty"},
     {"verify", "PLAN is required"},
-    {"export a.yaml b.json", "--urdf, --dh, --ur-kinematics or --map is required"},
+    {"export a.yaml b.json", "--urdf, --dh, --ur-kinematics, --map or --camera is required"},
     {"export a.yaml b.json --dh c --geometry best", "--geometry: best not in {nearest,estimate}"},
     {"program a.json", "--for is required"},
     {"program a.json --for fanuc", "--out is required"},

@@ -205,6 +205,38 @@ TEST(ProgramTargets, AreRefusedWhereTheyCannotBeUsed) {
               std::string::npos);
 }
 
+TEST(ProgramTargets, OfFilesThatWereCutOffAreRefused) {
+    const std::string axes = "A1 1,A2 2,A3 3,A4 4,A5 5,A6 6";
+    const auto is_cut = [](ProgramFormat format, const std::string& text) {
+        return Written(format, text).error().find("must be the whole program") != std::string::npos;
+    };
+    EXPECT_TRUE(is_cut(ProgramFormat::Kuka, "DEF a()\nPTP {" + axes + "}\n"));
+    EXPECT_TRUE(
+        is_cut(ProgramFormat::Abb,
+               "MODULE m\nCONST jointtarget a:=[[1,2,3,4,5,6],[9E9,9E9,9E9,9E9,9E9,9E9]];\n"));
+    EXPECT_TRUE(
+        is_cut(ProgramFormat::Ur, "def a():\n  while True:\n  movej([1,2,3,0,0,0])\nend\n"));
+    EXPECT_FALSE(is_cut(ProgramFormat::Ur, "movej([1,2,3,0,0,0])\n"));
+}
+
+TEST(ProgramTargets, ThatAreNoNumbersAreNamed) {
+    const std::string good = "A1 1,A2 2,A3 3,A4 4,A5 5,A6 6";
+    const TargetProgram kuka =
+        Written(ProgramFormat::Kuka, "DEF a()\nPTP {" + good + "}\nPTP {A1 nan,A2 2}\nEND\n")
+            .read();
+    EXPECT_EQ(kuka.targets.size(), 1U);
+    EXPECT_EQ(kuka.others, std::vector<long>{3});
+    const std::string end = ",[9E9,9E9,9E9,9E9,9E9,9E9]];\n";
+    const TargetProgram abb =
+        Written(ProgramFormat::Abb, "MODULE m\nCONST jointtarget a:=[[1,2,3,4,5,6]" + end +
+                                        "CONST jointtarget b:=[[1,2,3,4,5]" + end +
+                                        "PERS tooldata t:=[TRUE,[[0,0,1],[1,0,0,0]],[1,[0,0,1],"
+                                        "[1,0,0,0],0,0,0]];\nENDMODULE\n")
+            .read();
+    EXPECT_EQ(abb.targets.size(), 1U);
+    EXPECT_EQ(abb.others, std::vector<long>{3});
+}
+
 TEST(ProgramTargets, AreFoundOrRefusedInSpoiltFiles) {
     const TemporaryFolder folder;
     const CampaignFile campaign = cell_with(reversed_joints);

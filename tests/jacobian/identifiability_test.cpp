@@ -15,6 +15,7 @@
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "support/campaigns.hpp"
+#include "support/sensors.hpp"
 
 namespace posewise {
 namespace {
@@ -321,6 +322,19 @@ TEST(FindIdentifiable, LooksAtManyTargetsInParts) {
     EXPECT_EQ(many.kept.size(), three.kept.size() + 3 * 37);
     EXPECT_TRUE(has_clear_gap(many));
     EXPECT_EQ(many.dropped.size(), three.dropped.size());
+}
+
+/// 20 unknowns of base, place and lens, and a pinhole with a known place.
+TEST(LeastPoseCount, OfACameraIsThatOfItsNumbers) {
+    const Campaign arm = tracked_campaign(testing::fanuc());
+    Campaign robot = testing::before_camera(arm, testing::fixed_camera());
+    robot.spread.is_prior = true;
+    EXPECT_LE(least_pose_count(robot), 4);
+    CameraSetup open = testing::fixed_camera();
+    open.is_known.assign(9, false);
+    robot = testing::before_camera(arm, open);
+    robot.spread.is_prior = true;
+    EXPECT_LE(least_pose_count(robot), 6);
 }
 
 TEST(LeastPoseCount, IsFiveForThreeTargetsAndNineForOne) {

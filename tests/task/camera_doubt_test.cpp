@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include "posewise/calibrator/identification.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/task/doubts.hpp"
+#include "posewise/task/study.hpp"
 #include "support/robots.hpp"
 #include "support/sensors.hpp"
 
@@ -61,6 +63,21 @@ TEST(CameraDoubt, NamesTheSquaresThatFit) {
     EXPECT_NEAR(doubt->board_factor, 25 / 25.4, 2e-3);
     EXPECT_NEAR(doubt->square, 0.0508, 1e-12);
     EXPECT_LT(doubt->scaled_misfit, doubt->misfit);
+}
+
+TEST(CameraDoubt, SaysNothingOfTheBoardWhereSomethingElseIsWrong) {
+    const auto& [campaign, measured] = good();
+    Measurements in_degrees = measured;
+    in_degrees.configurations *= to_radians(1);
+    const auto doubt = find_camera_doubt(campaign, in_degrees, registered(campaign, in_degrees));
+    if (!doubt || doubt->board_factor == 1) return;
+    EXPECT_GT(doubt->board_factor, 0);
+    EXPECT_LT(doubt->scaled_misfit, doubt->misfit);
+}
+
+TEST(MeasuredStudy, IsRefusedWhereReadingsArePixels) {
+    const auto& [campaign, measured] = good();
+    EXPECT_THROW(study(campaign, measured, {}), InputError);
 }
 
 TEST(CameraDoubt, NamesAPrincipalPointOfAnotherImage) {

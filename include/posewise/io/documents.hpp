@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "posewise/io/camera_places.hpp"
 #include "posewise/io/result_files.hpp"
 #include "posewise/io/robot_files.hpp"
 #include "posewise/measurement/measurements.hpp"
@@ -89,7 +90,8 @@ struct ExportedRobot {
     std::vector<DhRow> dh;           ///< empty: not asked for
     std::optional<UrFrames> frames;  ///< for a UR
     std::vector<ReadBack> read_back;
-    std::optional<CorrectionMap> map = {};  ///< of the terms; nothing: not asked for
+    std::optional<CorrectionMap> map = {};    ///< of the terms; nothing: not asked for
+    std::optional<CameraPlaces> camera = {};  ///< nothing: not asked for
 
     const Geometry& written() const { return is_nearest ? *nearest : estimated; }
 };

@@ -10,12 +10,6 @@ namespace posewise {
 
 using Vector2d = Eigen::Vector2d;
 
-namespace detail {
-struct CameraPose;
-struct CornerDerivative;
-struct Lens;
-}  // namespace detail
-
 /// How a lens departs from a pinhole. Names and formulas are OpenCV's.
 enum class Distortion {
     None,
@@ -93,6 +87,10 @@ class CameraSensor final : public Sensor {
     /// Pose of board or camera in the flange frame.
     Isometry3d place(const VectorXd& unknowns) const;
     Intrinsics intrinsics(const VectorXd& unknowns) const;
+    /// Which of Intrinsics::values() are unknown.
+    const std::vector<Index>& unknown_intrinsics() const { return unknown_intrinsics_; }
+    /// Largest x/z at which the lens as stated does not fold the image.
+    double widest() const { return widest_; }
     /// How many times as large as stated the board is.
     double board_factor(const VectorXd& unknowns) const {
         return setup_.is_scale_unknown ? 1 + unknowns[unknowns.size() - 1] : 1;
@@ -147,19 +145,13 @@ class CameraSensor final : public Sensor {
     bool has_unknown_place() const { return !setup_.known_place; }
     Index place_count() const { return has_unknown_place() ? 6 : 0; }
     Index intrinsics_count() const { return static_cast<Index>(unknown_intrinsics_.size()); }
-    /// The intrinsic parameters with the unknown ones. Beyond the widest direction as stated, for
-    /// brown_conrady at most 72 degrees, no place depends on the polynomial.
-    detail::Lens lens_with(const VectorXd& unknowns) const;
-    detail::CameraPose pose_with(const Isometry3d& world_from_flange,
-                                 const VectorXd& unknowns) const;
-    void set_unknowns(const detail::CornerDerivative& corner, Eigen::Ref<RowMatrixXd> rows) const;
     ObservedPoints points_with(const Intrinsics& intrinsics) const;
 
     CameraSetup setup_;
     Targets origin_;                         ///< where what is on the flange has its origin
     std::vector<Index> unknown_intrinsics_;  ///< indices among Intrinsics::values()
     std::optional<Vector3d> normal_;         ///< away from the front of a plane board, in its frame
-    double widest_ = 1e3;  ///< largest x/z at which the lens does not fold the image
+    double widest_ = 1e3;
 };
 
 /// Number of the first target in files that list corners, CameraSetup::first_corner.

@@ -66,6 +66,7 @@ CameraFile read_opencv(const YamlValue& file) {
         throw matrix.error("has skew or a last number other than 1; must be fx 0 cx 0 fy cy 0 0 1");
     }
     camera.intrinsics = {K[0], K[4], K[2], K[5], Distortion::None, {}};
+    bool has_coefficients = false;
     for (const char* const key :
          {"distortion_coefficients", "distortion_coeffs", "dist_coeffs", "dist_coeff"}) {
         const auto value = find(file, key);
@@ -74,7 +75,13 @@ CameraFile read_opencv(const YamlValue& file) {
         const bool is_fisheye =
             model && (model->is_text("fisheye") || model->is_text("equidistant"));
         set_coefficients(*value, numbers_of(*value), is_fisheye, camera.intrinsics);
+        has_coefficients = true;
         break;
+    }
+    if (!has_coefficients) {
+        throw file.error(
+            "has a camera_matrix and no distortion_coefficients, as if it were cut off; must have "
+            "them, 0 for a lens without distortion");
     }
     const auto width = find(file, "image_width"), height = find(file, "image_height");
     if (width && height) camera.image = Vector2d(width->number(), height->number());

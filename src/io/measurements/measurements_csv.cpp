@@ -73,7 +73,7 @@ class RowReader {
         row_.name.clear();
         for (std::size_t field = 0; field < columns_.size(); ++field) read_field(field);
         if (field_of_point_) {
-            corners_.add(read_corner());
+            if (is_corner_seen()) corners_.add(read_corner());
             return;
         }
         if (content_ == Content::JointsAndObservations && contacts_.empty()) read_targets();
@@ -259,6 +259,13 @@ class RowReader {
     static bool is_nothing(std::string_view text) {
         return text.empty() || (text.size() == 3 && (text[0] | 0x20) == 'n' &&
                                 (text[1] | 0x20) == 'a' && (text[2] | 0x20) == 'n');
+    }
+
+    bool is_corner_seen() const {
+        const auto is_empty = [&](std::size_t k) {
+            return is_nothing(csv_.fields()[field_of_observation_[k]]);
+        };
+        return !(is_empty(0) && is_empty(1));
     }
 
     /// The cells of a target that was not seen are empty, all of them.

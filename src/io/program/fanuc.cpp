@@ -83,7 +83,12 @@ void read_fanuc_axes(const TextLine& line, bool is_first_group, std::vector<doub
         const bool is_other = name.starts_with('E') || !is_first_group;
         const bool is_joint = !is_other && name.starts_with('J') && end == rest.find("deg");
         if ((!is_joint && !is_other) || end >= rest.size()) return;
-        const double value = read_numbers(line, rest.substr(0, end)).front();
+        const std::vector<double> values = read_numbers(line, rest.substr(0, end));
+        if (values.size() != 1) {
+            throw line.error(fmt::format("has {} at {}; must be one number, with a point",
+                                         quote(std::string(trim(rest.substr(0, end)))), name));
+        }
+        const double value = values.front();
         if (is_joint) joints.push_back(value);
         if (is_other && value != 0) {
             throw line.error(

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <sstream>
 
 #include "core/text.hpp"
 #include "io/format/text.hpp"
@@ -40,6 +41,8 @@ class TargetReader {
     }
 
     void read_fanuc();
+    void check_end(const std::string& text, const std::set<std::string_view>& begins,
+                   const std::string& end) const;
     void read_kuka();
     void read_abb();
     void read_ur();
@@ -255,6 +258,19 @@ bool TargetReader::read_fanuc_place(std::size_t begin, std::string_view text,
     return true;
 }
 
+/// Each line that begins with one of these words needs one that is `end`.
+void TargetReader::check_end(const std::string& text, const std::set<std::string_view>& begins,
+                             const std::string& end) const {
+    Index open = 0;
+    std::istringstream lines(lower_case(text));
+    for (std::string line; std::getline(lines, line);) {
+        const std::string_view word = Cursor(line, 0).word();
+        open += begins.contains(word) ? 1 : word == end ? -1 : 0;
+    }
+    if (open <= 0) return;
+    throw input_error_at({path_}, "has no " + end + " at its end; must be the whole program");
+}
+
 // ---- KUKA ----
 
 /// The numbers of an aggregate, "{E6POS: X 1.0,...}".
@@ -262,6 +278,7 @@ struct KukaAggregate {
     std::vector<TextSpan> axes;             ///< A1, A2, ... in this order
     std::map<std::string, TextSpan> named;  ///< all, by lower case
     bool is_whole = true;                   ///< all of it are numbers
+    bool has_axes = false;                  ///< numbers or not
 };
 
 KukaAggregate read_kuka_numbers(const std::string& text, std::size_t at) {
@@ -273,6 +290,7 @@ KukaAggregate read_kuka_numbers(const std::string& text, std::size_t at) {
         const std::string name = lower_case(std::string(cursor.word()));
         const auto span = cursor.number();
         aggregate.is_whole = span.has_value();
+        aggregate.has_axes |= name.size() == 2 && name[0] == 'a' && name[1] >= '1';
         if (!span) break;
         aggregate.named.emplace(name, *span);
         if (name == fmt::format("a{}", aggregate.axes.size() + 1)) aggregate.axes.push_back(*span);
@@ -289,9 +307,6 @@ void TargetReader::read_kuka_aggregate(const std::string& text, std::size_t at) 
     const bool is_path = word == "lin" || word == "circ" || word == "slin" || word == "scirc" ||
                          word == "spl" || is_relative;
     const KukaAggregate aggregate = read_kuka_numbers(text, at);
-    const auto has_axis = [](const auto& one) {
-        return one.first.size() == 2 && one.first[0] == 'a';
-    };
     const bool is_axis_value = before.ends_with('=') && before.find("axis") != std::string::npos;
     const bool is_place = before.ends_with('=') && before.find("pos") != std::string::npos;
     if (!is_relative && aggregate.axes.size() == count() && (is_move || is_axis_value)) {
@@ -299,8 +314,7 @@ void TargetReader::read_kuka_aggregate(const std::string& text, std::size_t at) 
     }
     const bool is_cartesian = aggregate.named.contains("x") && (is_move || is_path || is_place);
     if (!is_cartesian || is_relative || !takes_places() || !aggregate.is_whole) {
-        if (is_cartesian || is_relative || std::ranges::any_of(aggregate.named, has_axis))
-            leave(at);
+        if (is_cartesian || is_relative || aggregate.has_axes) leave(at);
         return;
     }
     std::vector<TextSpan> values;
@@ -321,6 +335,8 @@ void TargetReader::read_kuka_aggregate(const std::string& text, std::size_t at) 
 
 void TargetReader::read_kuka() {
     const std::string text = masked(content(), ';');
+    check_end(text, {"def"}, "end");
+    check_end(text, {"defdat"}, "enddat");
     for (std::size_t at = text.find('{'); at != std::string::npos; at = text.find('{', at + 1)) {
         read_kuka_aggregate(text, at);
     }
@@ -352,8 +368,19 @@ bool TargetReader::read_abb_robtarget(const std::string& text, std::size_t at) {
     return true;
 }
 
+/// Whether a declaration of a target or a move is what states it, whatever stands there.
+bool is_abb_target(const std::string& text, std::size_t at) {
+    const std::size_t begin = text.find_last_of(";\n", at);
+    const std::string before =
+        lower_case(text.substr(begin == std::string::npos ? 0 : begin, at - begin));
+    return before.find("jointtarget") != std::string::npos ||
+           before.find("robtarget") != std::string::npos ||
+           before.find("move") != std::string::npos;
+}
+
 void TargetReader::read_abb() {
     const std::string text = masked(content(), '!');
+    check_end(text, {"module"}, "endmodule");
     for (std::size_t at = text.find('['); at != std::string::npos; at = text.find('[', at + 1)) {
         Cursor joints(text, at + 1);
         if (!joints.take('[')) continue;
@@ -361,8 +388,8 @@ void TargetReader::read_abb() {
         const auto spans = joints.numbers(count(), ']');
         if (spans && joints.take(',') && joints.take('[')) {
             add(*spans);
-        } else {
-            read_abb_robtarget(text, inner);
+        } else if (!read_abb_robtarget(text, inner) && is_abb_target(text, at)) {
+            leave(at);
         }
     }
 }
@@ -371,6 +398,7 @@ void TargetReader::read_abb() {
 
 void TargetReader::read_ur() {
     const std::string text = masked(content(), '#');
+    check_end(text, {"def", "while", "if", "for", "thread"}, "end");
     const auto is_move = [](std::string_view word) {
         return word == "movej" || word == "movel" || word == "movep";
     };

@@ -377,6 +377,26 @@ std::string to_json(const CorrectedPoses& poses, const Campaign& campaign) {
     return detail::json_text(document);
 }
 
+namespace {
+
+Json camera_to_json(const CameraPlaces& places) {
+    Json json;
+    json["on"] = places.is_on_flange ? "flange" : "base";
+    json["place"] = detail::base_to_json(places.camera);
+    json["board"] = detail::base_to_json(places.board);
+    if (!places.intrinsics) return json;
+    const VectorXd values = places.intrinsics->values();
+    const auto names = places.intrinsics->names();
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const bool is_px = k < 4;
+        json["intrinsics"][is_px ? names[k] + "_px" : names[k]] =
+            (is_px ? 1e3 : 1.0) * values[static_cast<Index>(k)];
+    }
+    return json;
+}
+
+}  // namespace
+
 std::string to_json(const ExportedRobot& robot, const Campaign& campaign) {
     const Geometry& written = robot.written();
     Json document = detail::make_document("export");
@@ -397,6 +417,7 @@ std::string to_json(const ExportedRobot& robot, const Campaign& campaign) {
     if (robot.frames) document["ur_kinematics"] = make_list(*robot.frames, detail::base_to_json);
     document["not_exported"] = robot.terms;
     if (robot.map) document["map"] = map_to_json(*robot.map);
+    if (robot.camera) document["camera"] = camera_to_json(*robot.camera);
     document["read_back"] = make_list(robot.read_back, read_back_to_json);
     return detail::json_text(document);
 }

@@ -39,13 +39,16 @@ void find_board_factor(const Campaign& campaign, const CameraSensor& camera,
     const double sigma = standard_deviations(scaled).tail<1>()[0];
     constexpr double clearly = 5;    // standard deviations
     constexpr double least = 0.004;  // lengths of robots are wrong by less
-    if (!(std::abs(factor - 1) > std::max(least, clearly * sigma))) return;
+    if (!(factor > 0 && std::abs(factor - 1) > std::max(least, clearly * sigma))) return;
     Campaign as_stated = open;
     as_stated.sensor = campaign.sensor;
     as_stated.nominal = campaign.nominal;
     const Estimate stated = identify(as_stated, measured, registered_as_stated);
-    doubt.misfit = misfit_of(campaign, measured, stated.parameters);
-    doubt.scaled_misfit = misfit_of(open, measured, scaled.parameters);
+    const double misfit = misfit_of(campaign, measured, stated.parameters);
+    const double scaled_misfit = misfit_of(open, measured, scaled.parameters);
+    if (!(scaled_misfit < misfit)) return;  // something else is wrong
+    doubt.misfit = misfit;
+    doubt.scaled_misfit = scaled_misfit;
     doubt.board_factor = factor;
     if (setup.columns > 0) doubt.square = (setup.corners[1] - setup.corners[0]).norm();
 }

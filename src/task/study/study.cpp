@@ -248,6 +248,11 @@ Study study(const Campaign& campaign, const Measurements& measurements,
 std::vector<Study> compare_models(const std::vector<RobotModel>& models,
                                   const Measurements& measurements, const StudyOptions& asked) {
     if (models.empty()) return {};
+    if (models.front().campaign.sensor->has_pixels()) {
+        throw InputError(
+            "a study of measured poses judges by distances; corners in pixels have none: a "
+            "simulated study says how many views are enough");
+    }
     StudyOptions options = asked;
     detail::complete(options, models.front().campaign);
     const Index least = largest_least_count(models, options);
