@@ -332,8 +332,9 @@ class Campaign:
         """Identification Jacobians, (poses, rows, parameters).
 
         Divided by the noise of means of ``repeats`` samples and multiplied by each parameter's
-        expected size, so without units: what :func:`posewise.select` takes. With ``scaled=False`` in
-        m per m and m per rad.
+        expected size, so without units: what :func:`posewise.select` takes. Of a pose that shows more
+        numbers than 6 and one for each unknown of the sensor so many rows remain, with the same
+        information. With ``scaled=False`` in m per m and m per rad, a row for each number.
         """
         check_number("repeats", repeats, 1, 1e9)
         if not isinstance(scaled, (bool, np.bool_)):
