@@ -13,7 +13,7 @@ MatrixXd gram(const Eigen::Ref<const RowMatrixXd>& A);
 /// The same, M^T = M.
 MatrixXd symmetric_gram(const Eigen::Ref<const RowMatrixXd>& A);
 
-/// So many columns or a few more: a B of whole_columns() is not copied.
+/// `columns` rounded up to whole vectors: transposed_product() does not copy a B of that width.
 Index whole_columns(Index columns);
 /// A^T B.
 RowMatrixXd transposed_product(const Eigen::Ref<const RowMatrixXd>& A,

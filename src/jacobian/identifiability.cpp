@@ -48,13 +48,15 @@ std::vector<Index> make_priority(const Campaign& campaign) {
 
 /// Numbers of the robot that are rounded blur its geometry, not the shapes of terms or of a lens.
 VectorXd least_shares_of(const Campaign& campaign) {
+    constexpr double least_of_exact = 1e-12;
     VectorXd shares = VectorXd::Constant(parameter_count(campaign), detail::least_visible);
     for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
         if (campaign.robot.parameter_term(k) == nullptr) continue;
-        shares[base_parameter_count(campaign) + k] = 1e-12;
+        shares[base_parameter_count(campaign) + k] = least_of_exact;
     }
-    if (campaign.sensor->has_pixels())
-        shares.tail(campaign.nominal.sensor.size()).setConstant(1e-12);
+    if (campaign.sensor->has_pixels()) {
+        shares.tail(campaign.nominal.sensor.size()).setConstant(least_of_exact);
+    }
     return shares;
 }
 

@@ -26,9 +26,10 @@ PoseInformation::PoseInformation(const Campaign& campaign, Parameters parameters
 }
 
 VectorXd PoseInformation::repeats(const SeenTargets& is_seen) const {
-    const VectorXd all = VectorXd::Constant(campaign_.sensor->target_count(), repeats_);
-    if (is_seen.size() == 0) return all;
-    return is_seen.matrix().transpose().cast<double>().cwiseProduct(all);
+    const Index targets = campaign_.sensor->target_count();
+    const auto times = is_seen.size() == 0 ? times_seen(all_seen(1, targets), repeats_)
+                                           : times_seen(is_seen, repeats_);
+    return times.transpose();
 }
 
 RowMatrixXd PoseInformation::rows(const VectorXd& q, const SeenTargets& is_seen) const {
@@ -74,8 +75,7 @@ VectorXd PoseInformation::differentiate_weighed(const VectorXd& q, const Weigh& 
     std::vector<FlangeMotionRate> rates;
     differentiate_flange_twice(campaign_, parameters_, q, motion, rates);
     WhitenedPose pose(campaign_);
-    const VectorXd times = repeats(is_seen);
-    pose.place(motion, unknowns, times);
+    pose.place(motion, unknowns, repeats(is_seen));
     const RowMatrixXd B = block(pose, motion);
     const RowMatrixXd BZ = weigh(B);
 

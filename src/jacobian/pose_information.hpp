@@ -41,7 +41,7 @@ class PoseInformation {
                                    const SeenTargets& is_seen = {}) const;
 
   private:
-    /// Of each target, 0 where it is not seen.
+    /// How often each target is observed; 0 where it is not seen.
     VectorXd repeats(const SeenTargets& is_seen) const;
     RowMatrixXd block(const WhitenedPose& pose, const FlangeMotion& motion) const;
 

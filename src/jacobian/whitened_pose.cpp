@@ -1,8 +1,5 @@
 #include "whitened_pose.hpp"
 
-#include <Eigen/QR>
-
-#include "core/decompositions.hpp"
 #include "posewise/measurement/sensor.hpp"
 
 namespace posewise::detail {
@@ -18,16 +15,22 @@ void WhitenedPose::place(const FlangeMotion& motion, const VectorXd& unknowns,
     is_diagonal_ = N.isDiagonal(0);
     if (is_diagonal_) inverse_deviations_ = N.diagonal().cwiseSqrt().cwiseInverse();
     whiten(N, A_, L_);
-    R_ = A_.rows() > A_.cols() ? triangular_factor(A_) : MatrixXd(A_);
-    narrow_ = R_;
+    if (A_.rows() > A_.cols()) {
+        qr_.compute(A_);
+        R_ = qr_.matrixQR().topRows(A_.cols()).triangularView<Eigen::Upper>();
+    } else {
+        R_ = A_;
+    }
     C_ = flange_covariance(campaign_, motion, unknowns);
     const auto R_6 = R_.leftCols<6>();
     MatrixXd shared = MatrixXd::Identity(R_.rows(), R_.rows());
     const MatrixXd by_flange = R_6 * C_ * R_6.transpose();
     raise_to_rounding(shared, by_flange.trace());
     shared += by_flange;
-    K_.setIdentity(R_.rows(), R_.rows());
-    whiten(shared, narrow_, K_);
+    // K itself, which slopes() needs, of one row as well: whiten() keeps none of a diagonal.
+    cholesky_factor(shared, K_);
+    narrow_ = R_;
+    K_.triangularView<Eigen::Lower>().solveInPlace(narrow_);
 }
 
 MatrixXd WhitenedPose::to_readings(const MatrixXd& X) const {
@@ -35,7 +38,7 @@ MatrixXd WhitenedPose::to_readings(const MatrixXd& X) const {
     if (A_.rows() > A_.cols()) {
         all.setZero(A_.rows(), X.cols());
         all.topRows(X.rows()) = X;
-        all = (Eigen::HouseholderQR<MatrixXd>(A_).householderQ() * all).eval();
+        all = (qr_.householderQ() * all).eval();
     }
     if (is_diagonal_) return inverse_deviations_.asDiagonal() * all;
     L_.transpose().triangularView<Eigen::Upper>().solveInPlace(all);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/QR>
+
 #include "measurement/noise.hpp"
 
 namespace posewise::detail {
@@ -31,7 +33,7 @@ class WhitenedPose {
     /// Derivatives of trace(Z B^T B) for a symmetric Z: 2 <by_A, dA> - <by_N, dN> - <by_C, dC>, and
     /// 2 <narrow()^T B Z, dE>.
     struct Slopes {
-        RowMatrixXd by_A;  ///< of the readings seen
+        RowMatrixXd by_A;  ///< a row for each reading that is seen
         MatrixXd by_N;
         Matrix6d by_C;
     };
@@ -46,8 +48,9 @@ class WhitenedPose {
     PoseNoise noise_;
     RowMatrixXd A_;  ///< L^-1 A
     bool is_diagonal_ = false;
-    MatrixXd L_;  ///< of an N that is not diagonal
-    VectorXd inverse_deviations_;
+    MatrixXd L_;                         ///< where N is not diagonal
+    VectorXd inverse_deviations_;        ///< where it is
+    Eigen::HouseholderQR<MatrixXd> qr_;  ///< of A_, if it has more rows than columns
     MatrixXd R_;
     Matrix6d C_;
     MatrixXd K_;

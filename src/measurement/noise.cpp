@@ -42,7 +42,7 @@ struct TargetGroup {
 };
 TargetGroup group_of_targets(const Sensor& sensor, const VectorXd& sensor_unknowns) {
     TargetGroup group;
-    const Index count = sensor.target_count();
+    const Index count = sensor.position_count();
     for (Index j = 0; j < count; ++j) group.middle += sensor.target_position(j, sensor_unknowns);
     group.middle /= static_cast<double>(count);
     double squares = 0;

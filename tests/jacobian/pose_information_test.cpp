@@ -117,6 +117,26 @@ TEST(PoseInformation, DerivativeAgreesWithDifferencesForEverySensor) {
     }
 }
 
+/// A single reading, whose covariance is one number.
+TEST(PoseInformation, OfOneDistanceHasItsDerivative) {
+    Campaign campaign = tracked_campaign(fanuc());
+    for (const auto& [name, one] : campaigns_of_every_sensor(fanuc())) {
+        if (one.sensor->rows_per_target() == 1) campaign = one;
+    }
+    ASSERT_EQ(campaign.sensor->rows_per_target(), 1);
+    campaign.joint_repeatability = VectorXd::Constant(6, 5e-4);
+    const SeenTargets seen = seen_targets({0}, campaign.sensor->target_count());
+    const PoseInformation pose(campaign, campaign.nominal);
+    RandomStream stream(85);
+    const VectorXd q = random_vector(stream, 6, 1);
+    const MatrixXd Z = random_symmetric(stream, pose.parameter_count());
+    const auto trace = [&](const VectorXd& joints) -> VectorXd {
+        return VectorXd::Constant(1, Z.cwiseProduct(pose.evaluate(joints, seen)).sum());
+    };
+    const VectorXd expected = numerical_jacobian(trace, q).transpose();
+    EXPECT_LE((pose.differentiate(q, Z, seen) - expected).norm(), 1e-8 * expected.norm());
+}
+
 TEST(PoseInformation, CountsOnlyTheTargetsThatAreSeen) {
     const SeenTargets seen = seen_targets({0, 2}, 3);
     for (const Campaign& campaign : campaigns_of_every_noise(fanuc())) {

@@ -90,7 +90,7 @@ struct ExportedRobot {
     std::vector<DhRow> dh;           ///< empty: not asked for
     std::optional<UrFrames> frames;  ///< for a UR
     std::vector<ReadBack> read_back;
-    std::optional<CorrectionMap> map = {};    ///< of the terms; nothing: not asked for
+    std::optional<CorrectionMap> map = {};    ///< corrects the terms; nothing: not asked for
     std::optional<CameraPlaces> camera = {};  ///< nothing: not asked for
 
     const Geometry& written() const { return is_nearest ? *nearest : estimated; }

@@ -32,8 +32,8 @@ Blocks make_position_blocks(const Campaign& campaign, const Parameters& paramete
 
 /// make_plain_blocks() scaled by parameter_scale() and whitened by the noise of means (sensor,
 /// joints, model) over `repeats` samples of each target (m x targets): without units, ready for
-/// criteria and selection. A pose that shows more rows than 6 and one for each of the sensor's
-/// unknowns has so many instead, with the same information.
+/// criteria and selection. A pose has at most 6 rows and one for each of the sensor's unknowns;
+/// more readings are combined into these, with the same information.
 Blocks make_blocks(const Campaign& campaign, const Parameters& parameters,
                    const RowMatrixXd& configurations, const RowMatrixXd& repeats);
 /// As above with all targets seen equally often.

@@ -66,23 +66,19 @@ CameraFile read_opencv(const YamlValue& file) {
         throw matrix.error("has skew or a last number other than 1; must be fx 0 cx 0 fy cy 0 0 1");
     }
     camera.intrinsics = {K[0], K[4], K[2], K[5], Distortion::None, {}};
-    bool has_coefficients = false;
+    std::optional<YamlValue> coefficients;
     for (const char* const key :
          {"distortion_coefficients", "distortion_coeffs", "dist_coeffs", "dist_coeff"}) {
-        const auto value = find(file, key);
-        if (!value) continue;
-        const auto model = find(file, "distortion_model");
-        const bool is_fisheye =
-            model && (model->is_text("fisheye") || model->is_text("equidistant"));
-        set_coefficients(*value, numbers_of(*value), is_fisheye, camera.intrinsics);
-        has_coefficients = true;
-        break;
+        if (!coefficients) coefficients = find(file, key);
     }
-    if (!has_coefficients) {
+    if (!coefficients) {
         throw file.error(
             "has a camera_matrix and no distortion_coefficients, as if it were cut off; must have "
             "them, 0 for a lens without distortion");
     }
+    const auto model = find(file, "distortion_model");
+    const bool is_fisheye = model && (model->is_text("fisheye") || model->is_text("equidistant"));
+    set_coefficients(*coefficients, numbers_of(*coefficients), is_fisheye, camera.intrinsics);
     const auto width = find(file, "image_width"), height = find(file, "image_height");
     if (width && height) camera.image = Vector2d(width->number(), height->number());
     return camera;

@@ -264,6 +264,23 @@ Json map_to_json(const CorrectionMap& map) {
             {"with_map", map_error_to_json(map.with_map)}};
 }
 
+Json camera_to_json(const CameraPlaces& places) {
+    Json json;
+    json["on"] = places.is_on_flange ? "flange" : "base";
+    json["place"] = detail::base_to_json(places.camera);
+    json["board"] = detail::base_to_json(places.board);
+    if (!places.intrinsics) return json;
+    const VectorXd values = places.intrinsics->values();
+    const auto names = places.intrinsics->names();
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const double value = values[static_cast<Index>(k)];
+        const bool is_px = k < 4;
+        json["intrinsics"][is_px ? names[k] + "_px" : names[k]] =
+            is_px ? pixel_units.to_reading(value) : value;
+    }
+    return json;
+}
+
 }  // namespace
 
 std::string with_sentences(const std::string& document, const std::vector<std::string>& warnings,
@@ -376,26 +393,6 @@ std::string to_json(const CorrectedPoses& poses, const Campaign& campaign) {
     }
     return detail::json_text(document);
 }
-
-namespace {
-
-Json camera_to_json(const CameraPlaces& places) {
-    Json json;
-    json["on"] = places.is_on_flange ? "flange" : "base";
-    json["place"] = detail::base_to_json(places.camera);
-    json["board"] = detail::base_to_json(places.board);
-    if (!places.intrinsics) return json;
-    const VectorXd values = places.intrinsics->values();
-    const auto names = places.intrinsics->names();
-    for (std::size_t k = 0; k < names.size(); ++k) {
-        const bool is_px = k < 4;
-        json["intrinsics"][is_px ? names[k] + "_px" : names[k]] =
-            (is_px ? 1e3 : 1.0) * values[static_cast<Index>(k)];
-    }
-    return json;
-}
-
-}  // namespace
 
 std::string to_json(const ExportedRobot& robot, const Campaign& campaign) {
     const Geometry& written = robot.written();

@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <filesystem>
-
 #include "core/text.hpp"
 #include "io/format/atomic_file.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/model/chain.hpp"
+#include "urdf_tree.hpp"
 
 namespace posewise::io {
 namespace {
@@ -20,19 +18,11 @@ using namespace detail;
 constexpr const char* camera_frame = "camera_optical_frame";
 constexpr const char* board_frame = "calibration_board";
 
-/// Digits to read the number back, never "-0".
-std::string plain(double number) { return fmt::format("{}", number + 0.0); }
-
-std::string list_plainly(const std::vector<double>& numbers, const char* separator) {
-    std::vector<std::string> words;
-    for (const double number : numbers) words.push_back(plain(number));
-    return fmt::format("{}", fmt::join(words, separator));
-}
-
 std::string opencv_matrix(const std::string& name, const RowMatrixXd& matrix) {
-    const std::vector<double> numbers(matrix.data(), matrix.data() + matrix.size());
+    const RowMatrixXd numbers = matrix.array() + 0.0;  // never "-0"
     return fmt::format("{}: !!opencv-matrix\n   rows: {}\n   cols: {}\n   dt: d\n   data: [ {} ]\n",
-                       name, matrix.rows(), matrix.cols(), list_plainly(numbers, ",\n       "));
+                       name, matrix.rows(), matrix.cols(),
+                       fmt::join(numbers.data(), numbers.data() + numbers.size(), ",\n       "));
 }
 
 std::string opencv_text(const CameraPlaces& places, const std::string& title) {
@@ -62,8 +52,6 @@ std::string opencv_text(const CameraPlaces& places, const std::string& title) {
 
 std::string joint_text(const std::string& parent, const std::string& child,
                        const Isometry3d& parent_from_child) {
-    const Vector3d xyz = parent_from_child.translation();
-    const Vector3d rpy = rpy_from_rotation(parent_from_child.linear());
     return fmt::format(
         "  <link name=\"{1}\"/>\n"
         "  <joint name=\"{0}_to_{1}\" type=\"fixed\">\n"
@@ -71,26 +59,26 @@ std::string joint_text(const std::string& parent, const std::string& child,
         "    <child link=\"{1}\"/>\n"
         "    <origin xyz=\"{2}\" rpy=\"{3}\"/>\n"
         "  </joint>\n",
-        parent, child, list_plainly({xyz.x(), xyz.y(), xyz.z()}, " "),
-        list_plainly({rpy.x(), rpy.y(), rpy.z()}, " "));
+        parent, child, vector_text(parent_from_child.translation()),
+        vector_text(rpy_from_rotation(parent_from_child.linear())));
+}
+
+/// The link of the flange, or of the base.
+std::string link_of(const CampaignFile& file, bool is_flange) {
+    if (file.urdf) return is_flange ? file.urdf->tip_link : file.urdf->base_link;
+    return is_flange ? "tool0" : "base_link";
 }
 
 std::string urdf_text(const CameraPlaces& places, const CampaignFile& file) {
-    const std::string flange = file.urdf ? file.urdf->tip_link : "tool0";
-    const std::string base = file.urdf ? file.urdf->base_link : "base_link";
-    const std::string& of_camera = places.is_on_flange ? flange : base;
-    const std::string& of_board = places.is_on_flange ? base : flange;
+    const std::string of_camera = link_of(file, places.is_on_flange);
+    const std::string of_board = link_of(file, !places.is_on_flange);
     std::string text = fmt::format("<robot name=\"camera\">\n  <link name=\"{}\"/>\n", of_camera);
     text += joint_text(of_camera, camera_frame, places.camera);
     text += fmt::format("  <link name=\"{}\"/>\n", of_board);
     return text + joint_text(of_board, board_frame, places.board) + "</robot>\n";
 }
 
-bool has_ending(const std::string& path, const std::vector<std::string>& endings) {
-    const std::string ending = std::filesystem::path(path).extension().string();
-    return std::find(endings.begin(), endings.end(), ending) != endings.end();
-}
-bool is_yaml(const std::string& path) { return has_ending(path, {".yaml", ".yml"}); }
+bool is_yaml(const std::string& path) { return path.ends_with(".yaml") || path.ends_with(".yml"); }
 
 }  // namespace
 
@@ -113,7 +101,7 @@ std::optional<CameraPlaces> camera_places(const Campaign& campaign, const Parame
 }
 
 void check_camera_path(const std::string& path) {
-    if (is_yaml(path) || has_ending(path, {".urdf", ".xacro"})) return;
+    if (is_yaml(path) || path.ends_with(".urdf") || path.ends_with(".xacro")) return;
     throw input_error_at({path},
                          "must end in .yaml (a file of OpenCV's) or .urdf (fixed joints), which "
                          "says what is written");
@@ -126,15 +114,14 @@ void write_camera(const std::string& path, const CampaignFile& file, const Camer
 }
 
 std::string static_transform(const CampaignFile& file, const CameraPlaces& places) {
-    const std::string flange = file.urdf ? file.urdf->tip_link : "tool0";
-    const std::string base = file.urdf ? file.urdf->base_link : "base_link";
-    const Vector3d p = places.camera.translation();
-    const Eigen::Quaterniond q(places.camera.linear());
+    const Vector3d p = places.camera.translation().array() + 0.0;  // never "-0"
+    Eigen::Quaterniond q(places.camera.linear());
+    q.coeffs().array() += 0.0;
     return fmt::format(
         "static_transform_publisher --x {} --y {} --z {} --qx {} --qy {} --qz {} --qw {} "
         "--frame-id {} --child-frame-id {}",
-        plain(p.x()), plain(p.y()), plain(p.z()), plain(q.x()), plain(q.y()), plain(q.z()),
-        plain(q.w()), places.is_on_flange ? flange : base, camera_frame);
+        p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(), link_of(file, places.is_on_flange),
+        camera_frame);
 }
 
 }  // namespace posewise::io

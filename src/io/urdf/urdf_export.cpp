@@ -91,10 +91,6 @@ std::vector<Correction> correct_origins(const std::vector<UrdfJoint>& joints,
     return corrections;
 }
 
-std::string numbers(const Vector3d& v) {
-    return fmt::format("{} {} {}", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);  // never "-0"
-}
-
 /// A tag with an attribute set: its value replaced, or the attribute put in after the name.
 std::string with_attribute(const std::string& tag, const std::string& name,
                            const std::string& value) {
@@ -132,10 +128,10 @@ Edit edit_origin(const XmlDocument& document, xml_node element, const UrdfJoint&
     const StartTag tag = document.start_tag(stated ? stated : element);
     std::string text = stated ? content.substr(tag.begin, tag.end - tag.begin) : "<origin/>";
     if (!(rotation_from_rpy(joint.rpy) - origin.linear()).isZero(same)) {
-        text = with_attribute(text, "rpy", numbers(rpy_from_rotation(origin.linear())));
+        text = with_attribute(text, "rpy", vector_text(rpy_from_rotation(origin.linear())));
     }
     if (!(joint.xyz - origin.translation()).isZero(same)) {
-        text = with_attribute(text, "xyz", numbers(origin.translation()));
+        text = with_attribute(text, "xyz", vector_text(origin.translation()));
     }
     if (stated) return {tag.begin, tag.end, text};
     // A line of its own in front of the first child, if the children stand so.

@@ -245,4 +245,8 @@ xml_node find_child(const XmlDocument& document, xml_node parent, const char* na
     return child;
 }
 
+std::string vector_text(const Vector3d& v) {
+    return fmt::format("{} {} {}", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
+}
+
 }  // namespace posewise::detail

@@ -39,6 +39,9 @@ std::optional<double> read_number(const XmlDocument& document, pugi::xml_node el
 std::optional<Vector3d> read_vector(const XmlDocument& document, pugi::xml_node element,
                                     const char* attribute, const std::string& subject);
 
+/// Three numbers as an attribute has them, in digits that read back exactly and never "-0".
+std::string vector_text(const Vector3d& v);
+
 /// Whether a name is of another namespace than the format's own, "drake:acceleration": an extension
 /// of other programs, no slip.
 inline bool is_foreign(std::string_view name) { return name.find(':') != std::string_view::npos; }
