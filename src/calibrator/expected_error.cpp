@@ -114,6 +114,30 @@ ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
         point_errors(campaign, estimate, measured.configurations, times_seen(measured), is_angle));
 }
 
+ExpectedError expected_place_error(const Campaign& campaign, const Estimate& estimate,
+                                   const RowMatrixXd& configurations) {
+    const Campaign found = with_model_error(campaign, estimate);
+    const double factor = campaign.spread.is_prior ? 1 : estimate.variance_of(true).factor;
+    const Targets& targets = campaign.sensor->targets();
+    const VectorXd& unknowns = estimate.parameters.sensor;
+    const TwistMatrix along = TwistMatrix::Identity(6, 6);
+    FlangeMotion motion;
+    RowMatrixXd J(3 * targets.count(), parameter_count(campaign));
+    RowMatrixXd P(3 * targets.count(), along.cols());
+    PointError sum;
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        differentiate_flange(campaign, estimate.parameters, configurations.row(i).transpose(),
+                             motion);
+        targets.differentiate(motion.world_from_flange, motion.twists, unknowns, J);
+        targets.differentiate(motion.world_from_flange, along, unknowns, P);
+        sum.parameters += (J * estimate.covariance).cwiseProduct(J).sum();
+        sum.model +=
+            factor * (P * detail::flange_covariance(found, motion, unknowns)).cwiseProduct(P).sum();
+    }
+    const auto count = static_cast<double>(configurations.rows() * targets.count());
+    return {std::sqrt(sum.parameters / count), std::sqrt(sum.model / count), 0};
+}
+
 ExpectedError expected_sample_error(const Campaign& campaign, const Estimate& estimate,
                                     const Measurements& measured) {
     RowMatrixXd configurations(measured.observations.rows(), measured.configurations.cols());

@@ -77,8 +77,8 @@ class SizeEvidence {
     ParameterSpread climb(ParameterSpread spread) const {
         for (int i = 0; i < iteration_limit; ++i) {
             const MatrixXd C = covariance(precisions_of(spread));
-            const VectorXd squares =
-                units_.cwiseAbs2().cwiseProduct((C * b_).cwiseAbs2() + C.diagonal());
+            const VectorXd in_units = (C * b_).cwiseAbs2() + C.diagonal();
+            const VectorXd squares = units_.cwiseAbs2().cwiseProduct(in_units.head(units_.size()));
             if (update(spread, squares) < tolerance) break;
         }
         return spread;
@@ -101,7 +101,10 @@ class SizeEvidence {
   private:
     /// Of the prior, in units.
     VectorXd precisions_of(const ParameterSpread& spread) const {
-        return units_.cwiseQuotient(robot_error_sizes(spread, robot_)).cwiseAbs2();
+        VectorXd precisions = VectorXd::Ones(S_.rows());  // those of a sensor are not learned
+        precisions.head(units_.size()) =
+            units_.cwiseQuotient(robot_error_sizes(spread, robot_)).cwiseAbs2();
+        return precisions;
     }
     Eigen::LLT<MatrixXd> information(const VectorXd& precisions) const {
         MatrixXd M = S_;
@@ -129,7 +132,7 @@ class SizeEvidence {
     const ParameterSpread& expected_;
     MatrixXd S_;  ///< information of the measurements on the errors, whatever base and targets are
     VectorXd b_;  ///< S times the errors that fit best
-    VectorXd units_;
+    VectorXd units_;  ///< of the robot's errors
 };
 
 }  // namespace

@@ -59,10 +59,10 @@ double missing_errors(const IdentificationProblem& problem, const Parameters& pa
     // The prior's rows of what is missing are not the poor model's.
     std::vector<Index> rows(static_cast<std::size_t>(with_all.observation_count()));
     std::iota(rows.begin(), rows.end(), Index{0});
-    for (Index k = 0; k < common && with_all.prior_count() > 0; ++k) {
-        const Index of_robot = order[static_cast<std::size_t>(k)] - base;
-        if (of_robot >= 0 && of_robot < at.robot.size()) {
-            rows.push_back(with_all.observation_count() + of_robot);
+    for (Index k = 0; k < common; ++k) {
+        const Index of_prior = order[static_cast<std::size_t>(k)] - with_all.prior_begin();
+        if (of_prior >= 0 && of_prior < with_all.prior_count()) {
+            rows.push_back(with_all.observation_count() + of_prior);
         }
     }
     const Index freedom = std::ssize(rows) - common;

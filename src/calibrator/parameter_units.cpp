@@ -21,7 +21,12 @@ ParameterUnits::ParameterUnits(const Campaign& campaign)
 VectorXd ParameterUnits::prior_coordinates(const Campaign& campaign,
                                            const Parameters& parameters) const {
     const Index count = prior_count(campaign);
-    if (units_.size() == 0) return parameters.robot.cwiseQuotient(scale_.segment(begin_, count));
+    if (units_.size() == 0) {
+        const Index of_robot = campaign.spread.is_prior ? parameters.robot.size() : 0;
+        VectorXd errors(count);
+        errors << parameters.robot.head(of_robot), parameters.sensor.head(count - of_robot);
+        return errors.cwiseQuotient(scale_.segment(begin_, count));
+    }
     return units_.block(begin_, begin_, count, count)
         .triangularView<Eigen::Lower>()
         .solve(step_between(campaign, campaign.prior->mean, parameters).segment(begin_, count));

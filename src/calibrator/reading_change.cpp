@@ -102,7 +102,7 @@ void change_image(const ReadingChange& change, const Sensor& sensor, RowMatrixXd
     if (camera == nullptr) return;
     const Intrinsics& stated = camera->setup().intrinsics;
     const Vector2d size =
-        kpx_per_px * camera->setup().view.image.value_or(2 * Vector2d(stated.cx, stated.cy));
+        kpx_per_px * camera->setup().image.value_or(2 * Vector2d(stated.cx, stated.cy));
     for (Index u = 0; u < observations.cols(); u += 2) {
         if (are_exchanged(change)) observations.col(u).swap(observations.col(u + 1));
         for (Index axis = 0; axis < 2; ++axis) {

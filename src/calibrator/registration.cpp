@@ -100,12 +100,24 @@ std::string describe_shortage(const Campaign& campaign, const Measurements& mean
                        place, alike, cure);
 }
 
+/// Of views of a camera, too few of which tell the board's pose.
+std::string describe_poor_views(const Seen& is_told) {
+    const Index told = is_told.rowwise().any().count();
+    return fmt::format(
+        "{} of {} show{} enough of the board to tell its pose: 4 corners or more that are not in "
+        "one line; more such views are needed",
+        told, detail::count_of(is_told.rows(), "view"), told == 1 ? "s" : "");
+}
+
 /// Base and sensor's unknowns that solve the linear equations, the base a rotation.
 Registration solve_linear(const Campaign& campaign, const ObservedPoints& observed,
                           const Measurements& means) {
-    const auto equations = state_equations(campaign, observed.points, as_points(means, observed));
+    const Measurements points = as_points(means, observed);
+    const auto equations = state_equations(campaign, observed.points, points);
     if (equations.A.rows() < equations.A.cols()) {
-        return {campaign.nominal, describe_shortage(campaign, means)};
+        const bool is_of_views = campaign.sensor->has_pixels();
+        return {campaign.nominal, is_of_views ? describe_poor_views(points.is_seen)
+                                              : describe_shortage(campaign, means)};
     }
     const auto free = detail::solve_freely(equations);
     const auto solution = free ? *free : detail::solve_for_rotation(equations);

@@ -85,7 +85,7 @@ std::optional<LinearFit> linear_fit(const IdentificationProblem& problem,
     const LinearisedSystem system = linearise(problem, parameters);
     NormalEquations equations = normal_equations(problem, system);
     const Campaign& campaign = problem.campaign;
-    if (prior == FitPrior::ExpectedSizes && problem.prior_count() == 0) {
+    if (prior == FitPrior::ExpectedSizes && !campaign.spread.is_prior) {
         const Index begin = base_parameter_count(campaign);
         const Index count = campaign.robot.parameter_count();
         equations.M.diagonal().segment(begin, count).array() += 1;

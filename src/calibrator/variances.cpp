@@ -106,7 +106,7 @@ std::vector<ResidualVariance> quotients(const Part& lengths, const Part& angles)
 
 MatrixXd find_variances(const IdentificationProblem& problem, const LinearisedSystem& system,
                         const MatrixXd& root, Estimate& estimate) {
-    const bool has_prior = problem.prior_count() > 0;
+    const bool has_prior = problem.campaign.spread.is_prior;
     const double factor = has_prior ? 1 : estimate.variance_factor;
     MatrixXd covariance = factor * root * root.transpose();
     const auto rows = rows_by_kind(problem);

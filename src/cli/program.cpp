@@ -214,6 +214,15 @@ void warn_of_rounding(const io::ProgramReport& report) {
             : detail::format_short(mm_per_m * loss->largest_slide, 2) + " mm"));
 }
 
+/// Of joints that nobody has compared with the pendant's.
+void warn_of_coupling(const io::CampaignFile& campaign, io::ProgramFormat format) {
+    const bool is_stated = !campaign.controller_maker.empty() || !campaign.controller.is_identity();
+    if (format != io::ProgramFormat::Fanuc || is_stated) return;
+    print_warning(
+        "J3 is q3 of the model, but most FANUCs count J3 from the ground: compare one pose with "
+        "the pendant and state in the campaign controller: {maker: fanuc, j23_factor: -1, 0 or 1}");
+}
+
 std::string describe(const io::ProgramReport& report) {
     std::string text = fmt::format(
         "{}: {} in {} for {}\n", detail::escape_controls(report.files.front()),
@@ -266,6 +275,7 @@ void write_program(const ProgramArguments& arguments, const CommonOptions& commo
         return find_loss(both, sent_plan(both.plan, both.campaign, controller, steps));
     });
     warn_of_rounding(report);
+    warn_of_coupling(both.campaign, format);
     report.stale = io::stale_program_files(arguments.out, format, program);
     const std::string before = content_of(report.sent);
     io::write_robot_program(arguments.out, format, program, report.sent, both.campaign, sent);

@@ -288,7 +288,8 @@ Index least_pose_count(const Campaign& stated, const StopSignal& stop) {
             find_independent_columns(J, all.kept, least_residual, stop, least_shares_of(campaign));
         return static_cast<Index>(some.kept.size()) == rank;
     };
-    Index least = (rank + rows - 1) / rows;  // nothing less can
+    const Index told = campaign.sensor->unknown_sizes().size();
+    Index least = (rank - told + rows - 1) / rows;  // nothing less can
     Index enough = least;
     for (Index step = 1; !suffices(enough); step *= 2) {
         least = enough + 1;

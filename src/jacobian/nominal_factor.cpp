@@ -37,10 +37,20 @@ VectorXd sizes_of(Campaign campaign) {
 
 MatrixXd stack_at_nominal(const Campaign& campaign, const ShownPoses& poses, Index first,
                           Index count) {
-    return make_plain_blocks(campaign, nominal_of(campaign),
-                             poses.configurations.middleRows(first, count),
-                             times_seen(poses.is_seen.middleRows(first, count), 1))
-        .matrix;
+    const RowMatrixXd of_poses =
+        make_plain_blocks(campaign, nominal_of(campaign),
+                          poses.configurations.middleRows(first, count),
+                          times_seen(poses.is_seen.middleRows(first, count), 1))
+            .matrix;
+    const Index told = campaign.sensor->unknown_sizes().size();
+    if (told == 0) return of_poses;
+    // That something is known of them counts as much as what the poses show.
+    const Index begin = parameter_count(campaign) - campaign.nominal.sensor.size();
+    const VectorXd norms = of_poses.middleCols(begin, told).colwise().norm().transpose();
+    MatrixXd both = MatrixXd::Zero(of_poses.rows() + told, of_poses.cols());
+    both.topRows(of_poses.rows()) = of_poses;
+    both.block(of_poses.rows(), begin, told, told).diagonal() = norms.cwiseMax(norms.mean());
+    return both;
 }
 
 MatrixXd factor_at_nominal(const Campaign& campaign, const StopSignal& stop) {

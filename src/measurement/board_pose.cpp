@@ -107,15 +107,58 @@ Isometry3d leant_over(const Isometry3d& pose) {
     return other;
 }
 
-std::optional<Isometry3d> pose_of_others(const BoardView& view,
-                                         const std::vector<Vector2d>& directions) {
-    if (view.corners.size() < 6) return std::nullopt;
-    const Shape shape = shape_of(view.corners);
-    const double size = shape.extents.norm() / std::sqrt(static_cast<double>(view.corners.size()));
+/// Points in no plane, their middle and how far they are from it.
+struct Body {
+    Vector3d middle;
+    double size = 0;
+    std::vector<Vector3d> points;  ///< from the middle, in sizes
+};
+
+Body body_of(const std::vector<Vector3d>& corners) {
+    const Shape shape = shape_of(corners);
+    Body body{
+        shape.middle, shape.extents.norm() / std::sqrt(static_cast<double>(corners.size())), {}};
+    for (const Vector3d& corner : corners) {
+        body.points.emplace_back((corner - body.middle) / body.size);
+    }
+    return body;
+}
+
+/// As if all points were equally deep, in a camera turned towards them [DeMenthon & Davis 1995]:
+/// good for what is small or far away, and where the projection leaves too much open.
+std::optional<Isometry3d> distant_pose_of(const Body& body,
+                                          const std::vector<Vector2d>& directions) {
+    const Index count = std::ssize(directions);
+    Vector3d sight = Vector3d::Zero();
+    for (const Vector2d& direction : directions) sight += direction.homogeneous().normalized();
+    const auto towards = Eigen::Quaterniond::FromTwoVectors(sight, Vector3d::UnitZ());
+    MatrixXd A(count, 4), b(count, 2);
+    for (Index k = 0; k < count; ++k) {
+        const auto point = static_cast<std::size_t>(k);
+        A.row(k) << body.points[point].transpose(), 1;
+        b.row(k) = (towards * directions[point].homogeneous()).hnormalized().transpose();
+    }
+    const Eigen::Matrix<double, 4, 2> solution = A.householderQr().solve(b);
+    const Vector3d x = solution.col(0).head<3>(), y = solution.col(1).head<3>();
+    const double depth = 1 / std::sqrt(x.norm() * y.norm());
+    if (!std::isfinite(depth)) return std::nullopt;
+    Matrix3d R;
+    R << x * depth, y * depth, x.cross(y) * depth * depth;
+    Isometry3d pose = Isometry3d::Identity();
+    pose.linear() = nearest_rotation(R.transpose());
+    pose.translation() = body.size * depth * Vector3d(solution(3, 0), solution(3, 1), 1);
+    pose = towards.inverse() * pose;
+    pose.translation() -= pose.linear() * body.middle;
+    return pose;
+}
+
+/// By the linear equations of the projection; they need six points.
+std::optional<Isometry3d> projected_pose_of(const Body& body,
+                                            const std::vector<Vector2d>& directions) {
+    if (directions.size() < 6) return std::nullopt;
     MatrixXd A = MatrixXd::Zero(2 * std::ssize(directions), 12);
     for (std::size_t k = 0; k < directions.size(); ++k) {
-        Eigen::RowVector4d X;
-        X << (view.corners[k] - shape.middle).transpose() / size, 1;
+        const Eigen::RowVector4d X = body.points[k].homogeneous().transpose();
         const auto row = static_cast<Index>(2 * k);
         A.block<1, 4>(row, 0) = A.block<1, 4>(row + 1, 4) = X;
         A.block<1, 4>(row, 8) = -directions[k].x() * X;
@@ -128,7 +171,7 @@ std::optional<Isometry3d> pose_of_others(const BoardView& view,
     pose.linear() = nearest_rotation(M);
     const double scale = (pose.linear().transpose() * M).trace() / 3;
     if (!(scale > 0)) return std::nullopt;
-    pose.translation() = size * P.col(3) / scale - pose.linear() * shape.middle;
+    pose.translation() = body.size * P.col(3) / scale - pose.linear() * body.middle;
     return pose;
 }
 
@@ -350,8 +393,12 @@ std::optional<Isometry3d> find_board(const BoardView& view, const Intrinsics& in
         for (const Isometry3d& start : {pose, leant_over(pose)}) {
             starts.push_back(start * plane->inverse());
         }
-    } else if (const auto pose = pose_of_others(view, directions)) {
-        starts.push_back(*pose);
+    } else {
+        const Body body = body_of(view.corners);
+        for (const auto& start :
+             {distant_pose_of(body, directions), projected_pose_of(body, directions)}) {
+            if (start) starts.push_back(*start);
+        }
     }
     std::optional<Isometry3d> best;
     double least = INFINITY;

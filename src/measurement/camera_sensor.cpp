@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "board_pose.hpp"
 #include "camera_view.hpp"
 #include "core/format.hpp"
 #include "noise_words.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/model/chain.hpp"
 #include "rigid_points.hpp"
@@ -19,22 +17,30 @@
 namespace posewise {
 namespace {
 
+constexpr double most_corner_sigma = 0.1;  // m
+
 std::vector<std::optional<Vector3d>> point_of_place(const std::optional<Isometry3d>& place) {
     if (!place) return {std::nullopt};
     return {Vector3d(place->translation())};
 }
 
-CameraSetup checked(CameraSetup setup) {
-    const std::size_t values = 4 + setup.intrinsics.coefficients.size();
-    if (setup.is_known.empty()) setup.is_known.assign(values, true);
-    if (setup.is_known.size() != values) {
+void check(SingleCamera& camera) {
+    const std::size_t values = 4 + camera.intrinsics.coefficients.size();
+    if (camera.is_known.empty()) camera.is_known.assign(values, true);
+    if (camera.is_known.size() != values) {
         throw InputError(fmt::format("{} intrinsic parameters are said to be known or not, not {}",
-                                     setup.is_known.size(), values));
+                                     camera.is_known.size(), values));
     }
-    Intrinsics assumed = setup.intrinsics;
-    if (assumed.fx == 0 && !setup.is_known[0]) assumed.fx = 1;
-    if (assumed.fy == 0 && !setup.is_known[1]) assumed.fy = 1;
+    Intrinsics assumed = camera.intrinsics;
+    if (assumed.fx == 0 && !camera.is_known[0]) assumed.fx = 1;
+    if (assumed.fy == 0 && !camera.is_known[1]) assumed.fy = 1;
     check_intrinsics(assumed);
+    detail::check_sigma("sigma", detail::kpx_per_px * camera.sigma, "kpx");
+}
+
+CameraSetup checked(CameraSetup setup) {
+    check(setup);
+    for (SingleCamera& other : setup.others) check(other);
     if (setup.corners.size() < 4) {
         throw InputError(
             fmt::format("the board has {} corners, must have at least 4", setup.corners.size()));
@@ -48,39 +54,73 @@ CameraSetup checked(CameraSetup setup) {
     if (setup.known_place && !setup.known_place->matrix().allFinite()) {
         throw InputError("the known pose of board or camera has a value that is no finite number");
     }
-    detail::check_sigma("sigma", detail::kpx_per_px * setup.sigma, "kpx");
+    if (!(setup.corner_sigma >= 0 && setup.corner_sigma <= most_corner_sigma)) {
+        throw InputError(fmt::format("the corners' sigma is {:g} m, must be from 0 to {:g} m",
+                                     setup.corner_sigma, most_corner_sigma));
+    }
     return setup;
+}
+
+/// "camera.", "camera2."
+std::string prefix_of(Index camera) {
+    return camera == 0 ? "camera." : fmt::format("camera{}.", camera + 1);
 }
 
 }  // namespace
 
+Isometry3d detail::frame_from(const Eigen::Ref<const VectorXd>& six) {
+    Isometry3d frame = Isometry3d::Identity();
+    frame.translation() = six.head<3>();
+    frame.linear() = rotation_from_vector(six.segment<3>(3));
+    return frame;
+}
+
 CameraSensor::CameraSensor(CameraSetup setup)
-    : setup_(checked(std::move(setup))), origin_(point_of_place(setup_.known_place)) {
-    for (std::size_t k = 0; k < setup_.is_known.size(); ++k) {
-        if (!setup_.is_known[k]) unknown_intrinsics_.push_back(static_cast<Index>(k));
+    : setup_(checked(std::move(setup))),
+      origin_(point_of_place(setup_.known_place), corner_error_count()) {
+    unknown_count_ = corner_error_count() + (has_unknown_place() ? 6 : 0);
+    for (Index c = 0; c < camera_count(); ++c) {
+        OwnUnknowns own{unknown_count_, {}};
+        const SingleCamera& one = camera(c);
+        for (std::size_t k = 0; k < one.is_known.size(); ++k) {
+            if (!one.is_known[k]) own.intrinsics.push_back(static_cast<Index>(k));
+        }
+        if (one.intrinsics.fx > 0) {
+            own.widest = detail::widest_tangent(detail::lens_of(one.intrinsics));
+        }
+        unknown_count_ += (c > 0 ? 6 : 0) + std::ssize(own.intrinsics);
+        own_.push_back(std::move(own));
     }
+    if (setup_.is_scale_unknown) ++unknown_count_;
     if (const auto plane = detail::plane_of(setup_.corners)) {
         const Vector3d normal = plane->linear().col(2);
         const bool is_plus = normal.z() > 0 || (normal.z() == 0 && normal.sum() > 0);
         normal_ = is_plus == setup_.view.is_front_plus_z ? normal : Vector3d(-normal);
     }
-    if (setup_.intrinsics.fx > 0)
-        widest_ = detail::widest_tangent(detail::lens_of(setup_.intrinsics));
+}
+
+const SingleCamera& CameraSensor::camera(Index camera) const {
+    if (camera == 0) return setup_;
+    return setup_.others[static_cast<std::size_t>(camera - 1)];
 }
 
 Isometry3d CameraSensor::place(const VectorXd& unknowns) const {
     if (setup_.known_place) return *setup_.known_place;
-    Isometry3d place = Isometry3d::Identity();
-    place.translation() = unknowns.head<3>();
-    place.linear() = rotation_from_vector(unknowns.segment<3>(3));
-    return place;
+    return detail::frame_from(unknowns.segment<6>(corner_error_count()));
 }
 
-Intrinsics CameraSensor::intrinsics(const VectorXd& unknowns) const {
-    if (unknown_intrinsics_.empty()) return setup_.intrinsics;
-    VectorXd values = setup_.intrinsics.values();
-    values(unknown_intrinsics_) = unknowns.segment(place_count(), intrinsics_count());
-    return setup_.intrinsics.with(values);
+PlacedCamera CameraSensor::placed(Index camera, const VectorXd& unknowns) const {
+    PlacedCamera placed{Isometry3d::Identity(), this->camera(camera).intrinsics};
+    Index next = first_unknown(camera);
+    if (camera > 0) {
+        placed.in_first = detail::frame_from(unknowns.segment<6>(next));
+        next += 6;
+    }
+    const std::vector<Index>& unknown = unknown_intrinsics(camera);
+    VectorXd values = placed.intrinsics.values();
+    values(unknown) = unknowns.segment(next, std::ssize(unknown));
+    placed.intrinsics = placed.intrinsics.with(values);
+    return placed;
 }
 
 Isometry3d CameraSensor::camera_from_board(const Isometry3d& world_from_flange,
@@ -89,56 +129,83 @@ Isometry3d CameraSensor::camera_from_board(const Isometry3d& world_from_flange,
     return setup_.is_on_flange ? world_from_place.inverse() : world_from_place;
 }
 
-bool CameraSensor::is_seen_from_back(const Isometry3d& world_from_flange,
+bool CameraSensor::is_seen_from_back(Index camera, const Isometry3d& world_from_flange,
                                      const VectorXd& unknowns) const {
-    const Isometry3d board = camera_from_board(world_from_flange, unknowns);
-    const Vector3d corner = board_factor(unknowns) * setup_.corners.front();
-    return normal_ && (board.linear() * *normal_).dot(board * corner) > 0;
+    const Isometry3d board = placed(camera, unknowns).in_first.inverse() *
+                             camera_from_board(world_from_flange, unknowns);
+    return normal_ && (board.linear() * *normal_).dot(board * corner(0, unknowns)) > 0;
 }
 
-VectorXd CameraSensor::unknowns(const Isometry3d& place, const Intrinsics& intrinsics) const {
-    VectorXd unknowns =
-        VectorXd::Zero(place_count() + intrinsics_count() + (setup_.is_scale_unknown ? 1 : 0));
-    if (has_unknown_place()) unknowns.head<6>() = tool_unknowns(place);
-    unknowns.segment(place_count(), intrinsics_count()) = intrinsics.values()(unknown_intrinsics_);
+VectorXd CameraSensor::unknowns(const Isometry3d& place, const Intrinsics& intrinsics,
+                                const std::vector<PlacedCamera>& others) const {
+    VectorXd unknowns = VectorXd::Zero(unknown_count_);
+    if (has_unknown_place()) unknowns.segment<6>(corner_error_count()) = tool_unknowns(place);
+    for (Index c = 0; c < camera_count(); ++c) {
+        const auto other = static_cast<std::size_t>(c - 1);
+        const bool is_placed = c > 0 && other < others.size();
+        Index next = first_unknown(c);
+        if (c > 0) {
+            if (is_placed) unknowns.segment<6>(next) = tool_unknowns(others[other].in_first);
+            next += 6;
+        }
+        const Intrinsics& lens = c == 0      ? intrinsics
+                                 : is_placed ? others[other].intrinsics
+                                             : camera(c).intrinsics;
+        const std::vector<Index>& unknown = unknown_intrinsics(c);
+        unknowns.segment(next, std::ssize(unknown)) = lens.values()(unknown);
+    }
     return unknowns;
 }
 
 std::vector<std::string> CameraSensor::observation_names() const {
     std::vector<std::string> names;
-    for (Index k = 1; k <= target_count(); ++k) {
-        names.push_back(fmt::format("p{}_u", k));
-        names.push_back(fmt::format("p{}_v", k));
+    for (Index c = 0; c < camera_count(); ++c) {
+        const std::string camera = c == 0 ? "" : fmt::format("c{}_", c + 1);
+        for (Index k = 1; k <= corner_count(); ++k) {
+            names.push_back(fmt::format("{}p{}_u", camera, k));
+            names.push_back(fmt::format("{}p{}_v", camera, k));
+        }
     }
     return names;
 }
 
 std::vector<std::string> CameraSensor::unknown_names() const {
     std::vector<std::string> names;
-    const std::string on_flange = setup_.is_on_flange ? "camera." : "board.";
-    for (const char* const name : {"x", "y", "z", "rx", "ry", "rz"}) {
-        if (has_unknown_place()) names.push_back(on_flange + name);
+    for (Index k = 0; k < corner_error_count(); ++k) {
+        names.push_back(fmt::format("board.p{}.{}", setup_.first_corner + k / 3, "xyz"[k % 3]));
     }
-    const auto of_values = setup_.intrinsics.names();
-    for (const Index k : unknown_intrinsics_) {
-        names.push_back("camera." + of_values[static_cast<std::size_t>(k)]);
+    const auto add_pose = [&names](const std::string& of) {
+        for (const char* const name : {"x", "y", "z", "rx", "ry", "rz"}) names.push_back(of + name);
+    };
+    if (has_unknown_place()) add_pose(setup_.is_on_flange ? "camera." : "board.");
+    for (Index c = 0; c < camera_count(); ++c) {
+        if (c > 0) add_pose(prefix_of(c));
+        const auto of_values = camera(c).intrinsics.names();
+        for (const Index k : unknown_intrinsics(c)) {
+            names.push_back(prefix_of(c) + of_values[static_cast<std::size_t>(k)]);
+        }
     }
     if (setup_.is_scale_unknown) names.emplace_back("board.scale");
     return names;
 }
 
 std::vector<bool> CameraSensor::unknown_is_angle() const {
-    std::vector<bool> is_angle(static_cast<std::size_t>(place_count()), false);
-    for (std::size_t k = 3; k < is_angle.size(); ++k) is_angle[k] = true;
-    is_angle.resize(unknown_names().size(), true);
+    std::vector<bool> is_angle(static_cast<std::size_t>(unknown_count_), true);
+    const auto set_lengths = [&is_angle](Index first, Index count) {
+        std::fill_n(is_angle.begin() + first, count, false);
+    };
+    set_lengths(0, corner_error_count() + (has_unknown_place() ? 3 : 0));
+    for (Index c = 1; c < camera_count(); ++c) set_lengths(first_unknown(c), 3);
     return is_angle;
 }
 
 std::vector<const AmountUnits*> CameraSensor::unknown_units() const {
     auto units = Sensor::unknown_units();
-    for (std::size_t k = 0; k < unknown_intrinsics_.size(); ++k) {
-        units[static_cast<std::size_t>(place_count()) + k] =
-            unknown_intrinsics_[k] < 4 ? &pixel_units : &plain_units;
+    for (Index c = 0; c < camera_count(); ++c) {
+        auto next = units.begin() + first_unknown(c) + (c > 0 ? 6 : 0);
+        for (const Index k : unknown_intrinsics(c)) {
+            *next++ = k < 4 ? &pixel_units : &plain_units;
+        }
     }
     if (setup_.is_scale_unknown) units.back() = &plain_units;
     return units;
@@ -146,63 +213,90 @@ std::vector<const AmountUnits*> CameraSensor::unknown_units() const {
 
 void CameraSensor::predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                            Eigen::Ref<VectorXd> observation) const {
-    const auto view = detail::board_from_camera(*this, world_from_flange, unknowns);
-    for (Index k = 0; k < target_count(); ++k) {
-        observation.segment<2>(2 * k) = detail::place_of(
-            view.lens, view.camera * (view.factor * setup_.corners[static_cast<std::size_t>(k)]));
+    const Isometry3d board = camera_from_board(world_from_flange, unknowns);
+    Index row = 0;
+    for (Index c = 0; c < camera_count(); ++c) {
+        const auto one = detail::camera_in_first(*this, c, unknowns);
+        for (Index k = 0; k < corner_count(); ++k, row += 2) {
+            observation.segment<2>(row) =
+                detail::place_of(one.lens, one.seen(board * corner(k, unknowns)));
+        }
     }
 }
 
 void CameraSensor::covariance(const Isometry3d&, const VectorXd&,
                               Eigen::Ref<MatrixXd> covariance) const {
-    const double sigma = detail::kpx_per_px * setup_.sigma;
     covariance.setZero();
-    covariance.diagonal().setConstant(sigma * sigma);
+    for (Index c = 0; c < camera_count(); ++c) {
+        const double sigma = detail::kpx_per_px * camera(c).sigma;
+        covariance.diagonal()
+            .segment(2 * c * corner_count(), 2 * corner_count())
+            .setConstant(sigma * sigma);
+    }
+}
+
+std::vector<NoiseNumber> CameraSensor::noise_numbers() const {
+    std::vector<NoiseNumber> numbers{{"sigma_px", {setup_.sigma}}};
+    for (Index c = 1; c < camera_count(); ++c) {
+        numbers.push_back({fmt::format("camera{}_sigma_px", c + 1), {camera(c).sigma}});
+    }
+    return numbers;
 }
 
 void CameraSensor::view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                                    Eigen::Ref<VectorXd> clearances) const {
-    const auto view = detail::board_from_camera(*this, world_from_flange, unknowns);
-    const detail::Lens& lens = view.lens;
-    const double widest = unknown_intrinsics_.empty() ? widest_ : detail::widest_tangent(lens);
-    for (Index k = 0; k < target_count(); ++k) {
-        const Vector3d p =
-            view.camera * (view.factor * setup_.corners[static_cast<std::size_t>(k)]);
+    const Isometry3d board = camera_from_board(world_from_flange, unknowns);
+    for (Index target = 0; target < target_count(); ++target) {
+        const Index c = target / corner_count();
+        const auto one = detail::camera_in_first(*this, c, unknowns);
+        const double widest =
+            unknown_intrinsics(c).empty() ? this->widest(c) : detail::widest_tangent(one.lens);
+        const Vector3d p = one.seen(board * corner(target % corner_count(), unknowns));
         const double to_side = std::atan2(p.head<2>().norm(), p.z());
         double least = std::atan(widest) - to_side;
         if (normal_) {
-            const Vector3d normal = view.camera.linear() * *normal_;
+            const Vector3d normal = one.in_first.linear().transpose() * (board.linear() * *normal_);
             const double tilt = std::atan2(normal.cross(-p).norm(), normal.dot(-p));
             least = std::min(least, setup_.view.most_tilt - tilt);
         }
-        if (setup_.view.image && least > 0) {
-            const Vector2d place = detail::place_of(lens, p);
-            const Vector2d focal(lens.values[0], lens.values[1]);
-            const Vector2d image = detail::kpx_per_px * *setup_.view.image;
+        if (camera(c).image && least > 0) {
+            const Vector2d place = detail::place_of(one.lens, p);
+            const Vector2d focal(one.lens.values[0], one.lens.values[1]);
+            const Vector2d image = detail::kpx_per_px * *camera(c).image;
             least = std::min({least, place.cwiseQuotient(focal).minCoeff(),
                               (image - place).cwiseQuotient(focal).minCoeff()});
         }
-        clearances[k] = least;
+        clearances[target] = least;
     }
 }
 
 SensorWords CameraSensor::words() const {
     const std::string what = setup_.is_on_flange ? "camera" : "board";
-    std::string intrinsics = "intrinsics known";
-    if (!unknown_intrinsics_.empty()) {
-        intrinsics = fmt::format("{} of {} intrinsic parameters to be identified",
-                                 unknown_intrinsics_.size(), setup_.is_known.size());
+    std::size_t unknown = 0, all = 0;
+    for (Index c = 0; c < camera_count(); ++c) {
+        unknown += unknown_intrinsics(c).size();
+        all += camera(c).is_known.size();
     }
+    std::string intrinsics = "intrinsics known";
+    if (unknown > 0) {
+        intrinsics = fmt::format("{} of {} intrinsic parameters to be identified", unknown, all);
+    }
+    std::string seen_by = setup_.is_on_flange ? "a camera on the flange" : "a camera that is fixed";
+    std::string unknowns = what + " in the flange frame";
+    if (camera_count() > 1) {
+        seen_by = fmt::format("{} cameras {}", camera_count(),
+                              setup_.is_on_flange ? "on the flange" : "that are fixed");
+        unknowns += ", further cameras in the first one's frame";
+    }
+    if (unknown > 0) unknowns += ", intrinsic parameters of the camera";
     return {"corners",
             what,
-            what + " in the flange frame" +
-                (unknown_intrinsics_.empty() ? "" : ", intrinsic parameters of the camera"),
+            unknowns,
             "sensor.place",
             {"base.known", "sensor.place.known"},
-            fmt::format("{} corners of a board seen by a camera {} ({} {}), {}, sigma {} px",
-                        target_count(), setup_.is_on_flange ? "on the flange" : "that is fixed",
-                        what, setup_.known_place ? "known" : "to be identified", intrinsics,
-                        detail::format_short(setup_.sigma))};
+            fmt::format("{} corners of a board seen by {} ({} {}), {}, sigma {} px", corner_count(),
+                        seen_by, what, setup_.known_place ? "known" : "to be identified",
+                        intrinsics, detail::format_short(setup_.sigma))};
 }
 
 Index first_corner(const Sensor& sensor) {
@@ -210,58 +304,9 @@ Index first_corner(const Sensor& sensor) {
     return camera != nullptr ? camera->setup().first_corner : 1;
 }
 
-// ---- Registration ----
-
-ObservedPoints CameraSensor::points_with(const Intrinsics& camera) const {
-    const auto positions = [this, camera](const VectorXd& observation, const SeenTargets& is_seen) {
-        detail::BoardView view;
-        for (const Index k : targets_seen(is_seen)) {
-            view.corners.push_back(setup_.corners[static_cast<std::size_t>(k)]);
-            view.pixels.emplace_back(observation.segment<2>(2 * k) / detail::kpx_per_px);
-        }
-        const auto board = detail::find_board(view, camera);
-        if (!board) return VectorXd();
-        const Isometry3d place = setup_.is_on_flange ? board->inverse() : *board;
-        return VectorXd(detail::points_of(place).reshaped());
-    };
-    const auto of_points = [this, camera](const VectorXd& coordinates) {
-        return unknowns(has_unknown_place() ? detail::frame_of(coordinates) : *setup_.known_place,
-                        camera);
-    };
-    const auto in_flange = [this](const VectorXd& unknowns) {
-        return VectorXd(detail::points_of(place(unknowns)).reshaped());
-    };
-    return {detail::rigid_targets(setup_.known_place), positions, of_points, in_flange};
-}
-
-std::optional<ObservedPoints> CameraSensor::observed_points() const {
-    return points_with(setup_.intrinsics);
-}
-
-std::optional<ObservedPoints> CameraSensor::observed_points(const Measurements& means) const {
-    if (unknown_intrinsics_.empty()) return observed_points();
-    std::vector<detail::BoardView> views;
-    for (Index i = 0; i < means.configuration_count(); ++i) {
-        detail::BoardView view;
-        for (const Index k : targets_seen(means.is_seen.row(i))) {
-            view.corners.push_back(setup_.corners[static_cast<std::size_t>(k)]);
-            view.pixels.emplace_back(means.observations.row(i).segment<2>(2 * k).transpose() /
-                                     detail::kpx_per_px);
-        }
-        if (view.corners.size() >= 4 && !detail::are_in_line(view.corners)) {
-            views.push_back(std::move(view));
-        }
-    }
-    const auto found =
-        detail::find_intrinsics(views, setup_.intrinsics, setup_.is_known, setup_.view.image);
-    if (!found && setup_.intrinsics.fx > 0 && setup_.intrinsics.fy > 0) return observed_points();
-    if (!found) {
-        throw InputError(
-            "the camera's intrinsic parameters do not follow from these views; more views of a "
-            "plane board that leans to different sides are needed, or intrinsics that are stated, "
-            "if only roughly (key sensor.intrinsics)");
-    }
-    return points_with(*found);
+Index camera_count(const Sensor& sensor) {
+    const auto* const camera = dynamic_cast<const CameraSensor*>(&sensor);
+    return camera != nullptr ? camera->camera_count() : 1;
 }
 
 }  // namespace posewise

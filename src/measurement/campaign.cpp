@@ -135,6 +135,8 @@ VectorXd parameter_scale(const Campaign& campaign) {
     }
     scale.segment(robot_begin, campaign.robot.parameter_count()) =
         robot_error_sizes(campaign.spread, campaign.robot);
+    const VectorXd of_sensor = campaign.sensor->unknown_sizes();
+    scale.segment(robot_begin + campaign.robot.parameter_count(), of_sensor.size()) = of_sensor;
     for (const auto& [name, size] : campaign.spread.by_name) {
         const auto found = std::find(names.begin(), names.end(), name);
         if (found == names.end()) {
@@ -147,15 +149,18 @@ VectorXd parameter_scale(const Campaign& campaign) {
 }
 
 Index prior_begin(const Campaign& campaign) {
-    return campaign.prior && campaign.prior->has_base ? 0 : base_parameter_count(campaign);
+    const Index base = base_parameter_count(campaign);
+    if (!campaign.spread.is_prior) return base + campaign.robot.parameter_count();
+    return campaign.prior && campaign.prior->has_base ? 0 : base;
 }
 
 Index prior_count(const Campaign& campaign) {
-    if (!campaign.spread.is_prior) return 0;
-    const bool has_sensor = campaign.prior && campaign.prior->has_sensor;
-    const Index end = has_sensor
+    const bool is_all_of_sensor =
+        campaign.spread.is_prior && campaign.prior && campaign.prior->has_sensor;
+    const Index end = is_all_of_sensor
                           ? parameter_count(campaign)
-                          : base_parameter_count(campaign) + campaign.robot.parameter_count();
+                          : base_parameter_count(campaign) + campaign.robot.parameter_count() +
+                                campaign.sensor->unknown_sizes().size();
     return end - prior_begin(campaign);
 }
 

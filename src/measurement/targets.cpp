@@ -64,10 +64,11 @@ std::vector<std::array<bool, 3>> marks_of(const std::vector<std::optional<Vector
 
 }  // namespace
 
-Targets::Targets(const std::vector<std::optional<Vector3d>>& known_positions)
-    : Targets(values_of(known_positions), marks_of(known_positions)) {}
+Targets::Targets(const std::vector<std::optional<Vector3d>>& known_positions, Index unknowns_before)
+    : Targets(values_of(known_positions), marks_of(known_positions), unknowns_before) {}
 
-Targets::Targets(std::vector<Vector3d> positions, std::vector<std::array<bool, 3>> is_known)
+Targets::Targets(std::vector<Vector3d> positions, std::vector<std::array<bool, 3>> is_known,
+                 Index unknowns_before)
     : known_(std::move(positions)) {
     if (known_.empty()) throw InputError("a sensor needs at least one target");
     for (std::size_t j = 0; j < known_.size(); ++j) {
@@ -75,7 +76,7 @@ Targets::Targets(std::vector<Vector3d> positions, std::vector<std::array<bool, 3
         for (std::size_t axis = 0; axis < 3; ++axis) {
             double& coordinate = known_[j][static_cast<Index>(axis)];
             if (!is_known[j][axis]) {
-                indices[axis] = unknown_count_++;
+                indices[axis] = unknowns_before + unknown_count_++;
                 coordinate = 0;
             } else if (!std::isfinite(coordinate)) {
                 throw InputError(

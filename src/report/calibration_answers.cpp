@@ -24,6 +24,7 @@ struct Judged {
     const Metrics& found;
     std::optional<RmsInterval> interval;
     std::string where;
+    const AmountUnits& units;
     const JudgedGroup* group = nullptr;
 };
 
@@ -65,19 +66,21 @@ Judged judge(const Calibration& calibration) {
                     fmt::format(
                         "at {}{}", describe_part(**judgement, group, name),
                         kind == PoseGroup::New ? "" : ", beyond the joint ranges calibrated with"),
-                    &group};
+                    *(*judgement)->units, &group};
             }
         }
     }
     const Metrics& fit = calibration.estimate.fit;
+    const AmountUnits& units = calibration.campaign.sensor->main_units();
     if (!calibration.held_out) {
-        return {fit, std::nullopt, "at the poses it was made with; nothing was held out"};
+        return {fit, std::nullopt, "at the poses it was made with; nothing was held out", units};
     }
     if (calibration.held_out->samples.point_count == 0) {
-        return {fit, std::nullopt, "at the poses it was made with, none of which can be left out"};
+        return {fit, std::nullopt, "at the poses it was made with, none of which can be left out",
+                units};
     }
     return {calibration.held_out->samples, calibration.held_out_interval,
-            "at poses held out in turn"};
+            "at poses held out in turn", units};
 }
 
 /// "0.1234 to 0.2 mm".
@@ -94,10 +97,10 @@ std::string sum_up(const Calibration& calibration, const Judged& judged, const A
     const double found = judged.found.rms();
     std::string text;
     if (!calibration.faults.empty()) text = "no calibration, " + calibration.faults.front() + "; ";
-    text += fmt::format("calibrated {} RMS", format_error(found, units));
+    text += fmt::format("calibrated {} RMS", format_error(found, judged.units));
     if (calibration.campaign.sensor->lengths_per_target() == 1) text += " of one length";
     if (judged.interval) {
-        text += fmt::format(" (95 %: {})", format_interval(*judged.interval, units));
+        text += fmt::format(" (95 %: {})", format_interval(*judged.interval, judged.units));
     }
     text += fmt::format(" {}", judged.where);
     if (calibration.campaign.robot.parameter_count() == 0) {
@@ -126,8 +129,8 @@ std::string describe_sureness(const Calibration& calibration, const Judged& judg
 /// The error expected beside the one found: at the poses judged, or, where parameters take up
 /// little of what is measured, at those held out (else a pose held out is known worse than one that
 /// was used).
-std::string compare_expected(const Calibration& calibration, const Judged& judged,
-                             const AmountUnits& units) {
+std::string compare_expected(const Calibration& calibration, const Judged& judged) {
+    const AmountUnits& units = judged.units;
     const auto sentence = [&](double expected, double found, const char* verdict) {
         return fmt::format("{} expected {}, {} found: {}", format_error(expected, units),
                            judged.where, format_error(found, units), verdict);
@@ -319,7 +322,7 @@ std::vector<Answer> answer(const Calibration& calibration) {
     const auto add = [&](const char* key, const char* question, const std::string& text) {
         if (!text.empty()) answers.push_back({key, question, text});
     };
-    add("expected", "As expected", compare_expected(calibration, judged, units));
+    add("expected", "As expected", compare_expected(calibration, judged));
     add("limit", "What limits it", describe_limit(calibration, units));
     add("influence", "Which pose matters most", describe_influence(calibration, units));
     add("drift", "Drift", describe_order(calibration) + describe_conditions(calibration));

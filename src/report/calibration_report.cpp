@@ -145,12 +145,22 @@ std::string describe_expected(const Calibration& calibration) {
     std::string text = describe(calibration.expected, "at poses like these", units) + '\n';
     if (calibration.expected_workspace) {
         text += describe(*calibration.expected_workspace, "over the workspace", units) + '\n';
+        if (const auto& place = calibration.expected_place) {
+            text += fmt::format(
+                "expected over the workspace, in the instrument's frame: {} (parameters {}, left "
+                "over {})\n",
+                detail::format_error(place->total(), length_units),
+                detail::format_error(place->parameters, length_units),
+                detail::format_error(place->model, length_units));
+        }
     } else if (!calibration.campaign.sensor->has_contacts()) {
         text +=
             "expected over the workspace: not known; the joint limits or the cell leave no poses\n";
     }
     const auto add = [&](const std::optional<Judgement>& judged, const char* where) {
-        if (judged && judged->expected) text += describe(*judged->expected, where, units) + '\n';
+        if (judged && judged->expected) {
+            text += describe(*judged->expected, where, *judged->units) + '\n';
+        }
     };
     add(calibration.verification, "at the verification");
     add(calibration.left_out, "not in plan");
@@ -175,7 +185,8 @@ std::string format_accuracy(const Calibration& calibration) {
         columns.emplace_back("held-out means", calibration.held_out->means);
     }
     const auto add = [&](const std::optional<Judgement>& judged, const char* name) {
-        if (judged) columns.emplace_back(name, judged->found);
+        const bool is_alike = judged && judged->units == &calibration.campaign.sensor->main_units();
+        if (is_alike) columns.emplace_back(name, judged->found);
     };
     add(calibration.verification, "verification");
     add(calibration.left_out, "not in plan");

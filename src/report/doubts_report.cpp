@@ -120,10 +120,17 @@ void describe_camera(const CameraDoubt& doubt, const std::string& at,
     }
     if (const auto& point = doubt.principal_point) {
         sentences.push_back(fmt::format(
-            "{}the principal point ({:.0f}, {:.0f}) px is far from the middle of {} ({:.0f}, "
+            "{}the principal point{} ({:.0f}, {:.0f}) px is far from the middle of {} ({:.0f}, "
             "{:.0f}): are the intrinsics of this image, neither scaled, cropped nor turned?",
-            at, (*point)[0], (*point)[1], doubt.is_of_image ? "the image" : "what is seen",
-            doubt.middle[0], doubt.middle[1]));
+            at, doubt.camera > 0 ? fmt::format(" of camera {}", doubt.camera + 1) : "", (*point)[0],
+            (*point)[1], doubt.is_of_image ? "the image" : "what is seen", doubt.middle[0],
+            doubt.middle[1]));
+    }
+    if (doubt.scatter > 0) {
+        sentences.push_back(fmt::format(
+            "{}corners scatter by {} px about whatever pose of the board suits a view; "
+            "sensor.sigma_px says {}",
+            at, detail::format_short(doubt.scatter, 2), detail::format_short(doubt.sigma, 2)));
     }
     if (doubt.is_seen_from_back) {
         sentences.push_back(

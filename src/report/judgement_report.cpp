@@ -47,15 +47,16 @@ std::string describe_limit(const JudgedGroup& group, const std::optional<double>
 }
 
 std::string describe_verdict(const Calibration& calibration, const Kind& kind, bool has_moved,
-                             const JudgedGroup& group) {
+                             const JudgedGroup& group, const AmountUnits& units) {
     const bool is_repeated = group.group == PoseGroup::Repeated;
     const std::string unjudged =
         is_repeated ? "; they were calibrated with and say nothing of other poses" : "";
     if (!group.expected) return unjudged;
     const std::string times =
         fmt::format("; {} times what is expected", format_short(group.ratio(), 3));
-    const bool is_calibration =
-        calibration.faults.empty() && group.found.rms() < calibration.nominal.rms();
+    const bool is_calibration = calibration.faults.empty() &&
+                                &units == &calibration.campaign.sensor->main_units() &&
+                                group.found.rms() < calibration.nominal.rms();
     switch (group.verdict) {
         case ChanceVerdict::NotJudged:
             return unjudged;
@@ -68,7 +69,6 @@ std::string describe_verdict(const Calibration& calibration, const Kind& kind, b
         case ChanceVerdict::Beyond:
             break;
     }
-    const AmountUnits& units = calibration.campaign.sensor->main_units();
     const std::string beyond =
         fmt::format("{}, beyond chance (up to {}): ", times, format_short(group.chance, 3));
     if (group.worst && !has_moved) {
@@ -87,7 +87,7 @@ std::string describe_verdict(const Calibration& calibration, const Kind& kind, b
 std::string describe(const Calibration& calibration, const Kind& kind,
                      const std::optional<Judgement>& judgement) {
     if (!judgement) return "";
-    const AmountUnits& units = calibration.campaign.sensor->main_units();
+    const AmountUnits& units = *judgement->units;
     const bool has_moved =
         judgement->moved || (calibration.moved && &judgement == &calibration.validation);
     std::string text;
@@ -95,7 +95,7 @@ std::string describe(const Calibration& calibration, const Kind& kind,
         text += fmt::format("{}, {}: RMS {}{}{}{}\n", kind.name, describe_poses(group),
                             format_error(group.found.rms(), units), describe_interval(group, units),
                             describe_limit(group, calibration.limit),
-                            describe_verdict(calibration, kind, has_moved, group));
+                            describe_verdict(calibration, kind, has_moved, group, units));
     }
     return text;
 }

@@ -2,6 +2,7 @@
 
 #include "../../src/measurement/feasible.hpp"
 #include "posewise/calibrator/identification.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "support/robots.hpp"
@@ -41,6 +42,9 @@ Campaign blind(const Campaign& campaign) {
         if (!setup.is_known[k]) values[static_cast<Index>(k)] = 0;
     }
     setup.intrinsics = setup.intrinsics.with(values);
+    for (SingleCamera& other : setup.others) {
+        if (!other.is_known[0]) other.intrinsics = other.intrinsics.with(0 * values);
+    }
     blind.sensor = std::make_shared<CameraSensor>(setup);
     blind.nominal.world_from_base.setIdentity();
     blind.nominal.sensor.setZero();
@@ -51,7 +55,7 @@ Campaign blind(const Campaign& campaign) {
 TEST(Camera, IsRegisteredFromNothing) {
     for (const CameraSetup& setup :
          {fixed_camera(), on_flange_with_lens(), unknown_lens(fixed_camera()),
-          unknown_lens(on_flange_with_lens())}) {
+          unknown_lens(on_flange_with_lens()), three_cameras()}) {
         Campaign exact = hand_eye(setup);
         exact.model_error = exact.model_error_orientation = 0;
         const Simulation simulated =
@@ -82,6 +86,82 @@ TEST(Camera, IsRegisteredFromPartsOfTheBoard) {
     const Registration found = register_base_and_targets(blind(exact), measured);
     ASSERT_TRUE(found.is_determined()) << found.undetermined;
     EXPECT_LT((found.parameters.sensor - simulated.truth.sensor).head<3>().norm(), 1e-3);
+}
+
+/// Of markers in no plane, few in a view, a projection leaves too much open.
+TEST(Camera, IsRegisteredFromAFewMarkersInNoPlane) {
+    Campaign exact = before_camera(tracked_campaign(fanuc()), camera_before_cube());
+    exact = with_robot(exact, without_parameters(exact.robot));
+    exact.model_error = exact.model_error_orientation = 0;
+    Simulation simulated =
+        simulate(exact, {.pose_count = 30, .repeats = 1, .truth_seed = 4, .seed = 3});
+    Measurements& measured = simulated.measurements;
+    for (Index i = 0; i < measured.is_seen.rows(); ++i) {
+        measured.is_seen(i, i % 8) = measured.is_seen(i, (3 * i + 1) % 8) = false;
+    }
+    const Registration found = register_base_and_targets(blind(exact), measured);
+    ASSERT_TRUE(found.is_determined()) << found.undetermined;
+    // Markers that are wrong by a millimetre turn their own frame.
+    const Index place = 3 * 8;
+    const VectorXd error = found.parameters.sensor - simulated.truth.sensor;
+    EXPECT_LT(error.segment<3>(place).norm(), 3e-3);
+    EXPECT_LT(error.tail<3>().norm(), 0.03);
+}
+
+/// Errors of the markers' places and of the robot by one calibration, with what is known of their
+/// sizes before: the squares of their errors in standard deviations.
+TEST(Camera, FindsWhereMarkersAreAsItsCovarianceSays) {
+    Campaign campaign = before_camera(tracked_campaign(fanuc()), camera_before_cube());
+    campaign.spread.is_prior = true;
+    campaign.spread.is_open = false;
+    campaign.model_error = campaign.model_error_orientation = 0;
+    double squares = 0;
+    double count = 0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        const Simulation simulated =
+            simulate(campaign, {.pose_count = 20, .repeats = 1, .truth_seed = seed, .seed = seed});
+        const Estimate estimate = identify(campaign, simulated.measurements, simulated.truth);
+        const VectorXd error = step_between(campaign, simulated.truth, estimate.parameters);
+        const VectorXd deviations = standard_deviations(estimate);
+        squares += error.cwiseQuotient(deviations).squaredNorm();
+        count += static_cast<double>(error.size());
+        const Index markers = base_parameter_count(campaign) + campaign.robot.parameter_count();
+        EXPECT_LT(deviations.segment(markers, 24).mean(), 0.8e-3);
+    }
+    EXPECT_NEAR(squares / count, 1, 0.25);
+}
+
+TEST(Camera, SaysThatViewsShowTooLittle) {
+    Campaign exact = hand_eye(fixed_camera());
+    Simulation simulated =
+        simulate(exact, {.pose_count = 12, .repeats = 1, .truth_seed = 4, .seed = 3});
+    Measurements& measured = simulated.measurements;
+    measured.is_seen.setConstant(false);
+    for (Index i = 0; i < 12; ++i) {
+        for (Index k = 0; k < 3; ++k) measured.is_seen(i, (5 * k + i) % 24) = true;
+    }
+    const std::string why = register_base_and_targets(blind(exact), measured).undetermined;
+    EXPECT_NE(why.find("0 of 12 views show enough of the board"), std::string::npos) << why;
+}
+
+TEST(Camera, MustShareViewsWithTheOthers) {
+    Campaign exact = hand_eye(three_cameras());
+    Simulation simulated =
+        simulate(exact, {.pose_count = 20, .repeats = 1, .truth_seed = 4, .seed = 3});
+    Measurements& measured = simulated.measurements;
+    const Index corners = measured.is_seen.cols() / 3;
+    for (Index i = 0; i < measured.is_seen.rows(); ++i) {
+        const bool is_by_second = i % 2 == 0;
+        measured.is_seen.row(i).head(corners).setConstant(!is_by_second);
+        measured.is_seen.row(i).tail(2 * corners).setConstant(is_by_second);
+    }
+    try {
+        register_base_and_targets(blind(exact), measured);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("camera 2 shows"), std::string::npos)
+            << error.what();
+    }
 }
 
 TEST(Camera, IsNotDeterminedByTurnsAboutOneAxis) {

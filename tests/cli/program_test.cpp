@@ -215,6 +215,20 @@ TEST_F(ProgramCommand, SaysWhatItReplaces) {
     EXPECT_NE(text_of("A.ls").find("30% FINE"), std::string::npos);
 }
 
+TEST_F(ProgramCommand, WarnsWhereNobodySaysHowAFanucCountsJ3) {
+    const std::string warning = "most FANUCs count J3 from the ground";
+    write_cell("plain.yaml", "{}");
+    const Outcome unstated = run("program p.json --campaign plain.yaml --for fanuc -o A.ls");
+    EXPECT_NE(unstated.err.find(warning), std::string::npos) << unstated.err;
+    write_cell("stated.yaml", "{maker: fanuc, j23_factor: 0}");
+    for (const std::string other :
+         {"plain.yaml --for abb -o a.mod", "stated.yaml --for fanuc -o B.ls"}) {
+        const Outcome stated = run("program p.json --campaign " + other);
+        EXPECT_EQ(stated.code, 0) << stated.err;
+        EXPECT_EQ(stated.err.find(warning), std::string::npos) << stated.err;
+    }
+}
+
 TEST_F(ProgramCommand, RefusesWhatNoRobotShouldDo) {
     write_cell("plain.yaml", "{}");
     expect_input_error("program p.json --campaign plain.yaml --for yaskawa -o A.jbi",

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "campaign_text.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/measurements_file.hpp"
@@ -123,7 +125,7 @@ TEST(ReadCamera, TakesFilesOfOpenCvAndKalibr) {
     EXPECT_EQ(setup.intrinsics.fy, 1205);
     EXPECT_EQ(setup.intrinsics.cx, 655);
     EXPECT_EQ(setup.intrinsics.coefficients, (std::vector<double>{-0.1, 0.02, 1e-3, 0, 0.01}));
-    EXPECT_EQ(*setup.view.image, Vector2d(1280, 960));
+    EXPECT_EQ(*setup.image, Vector2d(1280, 960));
     const CampaignFile of_kalibr = read_with_file(kalibr);
     EXPECT_EQ(setup_of(of_kalibr).intrinsics.distortion, Distortion::Fisheye);
     EXPECT_EQ(setup_of(of_kalibr).intrinsics.cy, 470);
@@ -171,6 +173,67 @@ TEST(ReadCorners, TakesARowForEachInAnyOrder) {
     EXPECT_EQ(measured.observations(0, 2), 0.64);
     EXPECT_EQ(measured.observations(0, 10), 0.7005);
     EXPECT_EQ(measured.observations(1, 1), 0.2);
+}
+
+const std::string two_cameras =
+    camera +
+    "  other_cameras:\n"
+    "    - {image_px: [640, 480], intrinsics: {fx_px: 600, fy_px: 600, cx_px: 320, cy_px: 240},\n"
+    "       place: {position_mm: [100, 0, 0], rpy_deg: [0, 5, 0]}}\n";
+
+TEST(ReadCamera, TakesFurtherCameras) {
+    const Campaign campaign = read(two_cameras);
+    const CameraSetup& setup = setup_of(campaign);
+    ASSERT_EQ(setup.others.size(), 1U);
+    EXPECT_EQ(setup.others[0].sigma, setup.sigma);
+    EXPECT_EQ(*setup.others[0].image, Vector2d(640, 480));
+    EXPECT_EQ(campaign.sensor->target_count(), 12);
+    EXPECT_TRUE(campaign.has_nominal_targets);
+    const auto names = campaign.sensor->unknown_names();
+    const auto place = std::find(names.begin(), names.end(), "camera2.x") - names.begin();
+    EXPECT_NEAR(campaign.nominal.sensor[place], 0.1, 1e-15);
+    EXPECT_FALSE(
+        read(replaced(two_cameras,
+                      ",\n       place: {position_mm: [100, 0, 0], rpy_deg: [0, 5, 0]}", ""))
+            .has_nominal_targets);
+}
+
+TEST(ReadCamera, TakesHowWellMarkersAreKnown) {
+    const Campaign campaign =
+        read(replaced(camera, "square_mm: 25", "square_mm: 25, sigma_mm: 0.3"));
+    EXPECT_NEAR(setup_of(campaign).corner_sigma, 3e-4, 1e-15);
+    EXPECT_EQ(campaign.sensor->unknown_names().front(), "board.p1.x");
+}
+
+TEST(ReadCorners, OfSeveralCamerasSayWhichSawThem) {
+    const std::string header = "config,q1_deg,q2_deg,point,u_px,v_px,camera\n";
+    const Measurements measured =
+        corners(header + "a,10,20,2,600,400,2\na,10,20,2,1200,900,1\n", two_cameras);
+    EXPECT_TRUE(measured.is_seen(0, 1));
+    EXPECT_TRUE(measured.is_seen(0, 7));
+    EXPECT_EQ(measured.is_seen.count(), 2);
+    EXPECT_EQ(measured.observations(0, 14), 0.6);
+    const TemporaryFolder folder;
+    const std::string path = folder.write("m.csv", "");
+    write_measurements_csv(path, read(two_cameras), measured, {});
+    const Measurements again = read_measurements_csv(path, read(two_cameras));
+    EXPECT_TRUE((again.is_seen == measured.is_seen).all());
+    const auto error_of = [&](const std::string& row, const std::string& campaign) {
+        return input_error_of([&] { corners(header + row, campaign); });
+    };
+    EXPECT_NE(error_of("a,10,20,2,600,400,3\n", two_cameras).find("a camera, 1 to 2"),
+              std::string::npos);
+    EXPECT_NE(error_of("a,10,20,2,700,400,2\n", two_cameras).find("must be from 0 to 640"),
+              std::string::npos);
+    EXPECT_NE(error_of("a,10,20,2,600,400,2\na,10,20,2,600,400,2\n", two_cameras)
+                  .find("corner 2 of camera 2 of configuration"),
+              std::string::npos);
+    EXPECT_NE(error_of("a,10,20,2,600,400,2\n", camera).find("sensor.other_cameras"),
+              std::string::npos);
+    EXPECT_NE(input_error_of([&] {
+                  corners("config,q1_deg,q2_deg,point,u_px,v_px\na,10,20,2,1,2\n", two_cameras);
+              }).find("missing column camera"),
+              std::string::npos);
 }
 
 TEST(ReadCorners, CountsFromZeroWhereTheCampaignSaysSo) {

@@ -277,7 +277,7 @@ TEST(CameraSensor, IsNotPlannedWhereNobodyKnowsWhatItSees) {
 }
 
 TEST(CameraSensor, HasTheDerivativeByTheSizeOfItsBoard) {
-    for (CameraSetup setup : {fixed_camera(), camera_on_flange()}) {
+    for (CameraSetup setup : {fixed_camera(), camera_on_flange(), camera_before_cube()}) {
         setup.is_scale_unknown = true;
         const CameraSensor sensor(setup);
         Isometry3d place(Eigen::AngleAxisd(0.4, Vector3d(1, -2, 0.5).normalized()));
@@ -294,6 +294,51 @@ TEST(CameraSensor, HasTheDerivativeByTheSizeOfItsBoard) {
         EXPECT_EQ(sensor.unknown_names().back(), "board.scale");
         EXPECT_EQ(sensor.unknown_units().back(), &plain_units);
     }
+}
+
+TEST(CameraSensor, NamesErrorsOfItsCornersFirst) {
+    CameraSetup setup = camera_before_cube();
+    setup.first_corner = 0;
+    const CameraSensor sensor(setup);
+    const auto names = sensor.unknown_names();
+    ASSERT_EQ(names.size(), 30u);
+    EXPECT_EQ(names.front(), "board.p0.x");
+    EXPECT_EQ(names[23], "board.p7.z");
+    EXPECT_EQ(names[24], "board.x");
+    EXPECT_EQ(sensor.unknown_units()[23], &length_units);
+    EXPECT_EQ(sensor.unknown_units()[27], &angle_units);
+    EXPECT_EQ(sensor.unknown_sizes(), VectorXd::Constant(24, 1e-3));
+    VectorXd unknowns = VectorXd::Zero(30);
+    unknowns.segment<3>(24) = Vector3d(1, 2, 3);
+    EXPECT_EQ(sensor.targets().position(0, unknowns), Vector3d(1, 2, 3));
+}
+
+TEST(CameraSensor, SeesTheBoardFromWhereEachCameraIs) {
+    const CameraSetup setup = three_cameras();
+    const CameraSensor sensor(setup);
+    const CameraSensor alone(fixed_camera());
+    const auto others = beside_first(setup);
+    Isometry3d place(Eigen::AngleAxisd(0.4, Vector3d(1, -2, 0.5).normalized()));
+    const Isometry3d flange(Eigen::Translation3d(0.1, 0.2, 2.5) *
+                            Eigen::AngleAxisd(0.3, Vector3d::UnitX()));
+    const VectorXd all = sensor.predict(flange, sensor.unknowns(place, setup.intrinsics, others));
+    for (Index c = 0; c < 3; ++c) {
+        const Isometry3d in_first =
+            c == 0 ? Isometry3d::Identity() : others[static_cast<std::size_t>(c - 1)].in_first;
+        const VectorXd one =
+            alone.predict(in_first.inverse() * flange, alone.unknowns(place, setup.intrinsics));
+        EXPECT_LT((all.segment(24 * c, 24) - one).cwiseAbs().maxCoeff(), 1e-12);
+    }
+    const MatrixXd covariance = sensor.covariance(flange, VectorXd::Zero(27));
+    EXPECT_NEAR(covariance(30, 30), 4 * covariance(3, 3), 1e-20);
+    const auto names = sensor.unknown_names();
+    EXPECT_EQ(names[6], "camera2.x");
+    EXPECT_EQ(names[18], "camera3.fx");
+    EXPECT_EQ(names.size(), 27u);
+    EXPECT_EQ(sensor.unknown_units()[6], &length_units);
+    EXPECT_EQ(sensor.unknown_units()[9], &angle_units);
+    EXPECT_EQ(sensor.unknown_units()[18], &pixel_units);
+    EXPECT_EQ(sensor.observation_names()[24], "c2_p1_u");
 }
 
 TEST(CameraSensor, NamesUnknownsWithTheirUnits) {
@@ -320,6 +365,12 @@ TEST(CameraSensor, RefusesWhatIsNoCamera) {
     refuses([](CameraSetup& s) { s.corners.resize(3); });
     refuses([](CameraSetup& s) { s.corners = chessboard(5, 1, 0.1); });
     refuses([](CameraSetup& s) { s.sigma = 0; });
+    refuses([](CameraSetup& s) { s.corner_sigma = -1e-3; });
+    refuses([](CameraSetup& s) { s.corner_sigma = NAN; });
+    refuses([](CameraSetup& s) {
+        s.others = {s};
+        s.others[0].intrinsics.fy = -1;
+    });
     refuses([](CameraSetup& s) { s.intrinsics.fx = 0; });
     refuses([](CameraSetup& s) { s.intrinsics.cx = NAN; });
     refuses([](CameraSetup& s) { s.intrinsics.coefficients.resize(6); });

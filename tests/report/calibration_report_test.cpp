@@ -6,6 +6,7 @@
 #include "posewise/model/error_terms.hpp"
 #include "posewise/report/reports.hpp"
 #include "support/campaigns.hpp"
+#include "support/sensors.hpp"
 
 namespace posewise {
 namespace {
@@ -165,6 +166,35 @@ TEST(FormatCalibration, SaysWhetherTheValidationIsAsExpected) {
         << report();
     EXPECT_TRUE(holds(report(), "extrapolated; calibrate with poses like those, too\n"))
         << report();
+}
+
+TEST(FormatCalibration, ShowsWhatAnotherInstrumentJudgesInItsOwnUnits) {
+    const Campaign tracked = testing::tracked_campaign(testing::fanuc());
+    const Campaign seen = testing::before_camera(tracked, testing::fixed_camera());
+    const Simulation views = simulate(seen, {.pose_count = 30, .repeats = 1, .truth_seed = 2});
+    Parameters truth = tracked.nominal;
+    truth.robot = views.truth.robot;
+    const RowMatrixXd poses =
+        simulate(tracked, {.pose_count = 20, .seed = 9}).measurements.configurations;
+    const Measurements others = simulate_measurements(tracked, truth, poses, 1, 5);
+    CalibrationOptions options;
+    options.folds = 0;
+    options.validation = &others;
+    options.validation_campaign = &tracked;
+    options.refitted = {"base", "targets"};
+    const Calibration calibration = calibrate(seen, views.measurements, options);
+    ASSERT_TRUE(calibration.validation);
+    EXPECT_EQ(calibration.validation->units, &length_units);
+    const std::string text = format(calibration);
+    const auto line = [&text](const std::string& begin) {
+        const std::size_t at = text.find(begin);
+        return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
+    };
+    EXPECT_TRUE(holds(line("validation, "), " mm")) << text;
+    EXPECT_FALSE(holds(line("validation, "), " px")) << text;
+    EXPECT_FALSE(holds(line("error "), "validation")) << text;
+    EXPECT_TRUE(holds(line("expected over the workspace, in the instrument's frame: "), " mm"))
+        << text;
 }
 
 TEST(FormatCalibration, NeverSaysWithinChanceOfPosesCalibratedWith) {

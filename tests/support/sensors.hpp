@@ -38,7 +38,7 @@ inline CameraSetup fixed_camera() {
     setup.intrinsics = {
         1210, 1190, 655, 470, Distortion::BrownConrady, {-0.12, 0.05, 1e-3, -2e-3, 0.01}};
     setup.sigma = 0.1;
-    setup.view.image = Vector2d(1280, 960);
+    setup.image = Vector2d(1280, 960);
     return setup;
 }
 
@@ -52,12 +52,47 @@ inline CameraSetup camera_on_flange() {
     return setup;
 }
 
+/// A fixed camera before the corners of a cube, whose places are known to a millimetre.
+inline CameraSetup camera_before_cube() {
+    CameraSetup setup = fixed_camera();
+    setup.corners.clear();
+    for (const double z : {0.0, 0.1}) {
+        for (const double y : {0.0, 0.1}) {
+            for (const double x : {0.0, 0.1}) setup.corners.emplace_back(x, y, z);
+        }
+    }
+    setup.corner_sigma = 1e-3;
+    return setup;
+}
+
+/// Two cameras that are fixed to each other, one more whose intrinsic parameters are unknown.
+inline CameraSetup three_cameras() {
+    CameraSetup setup = fixed_camera();
+    setup.others = {setup, setup};
+    setup.others[0].sigma = 0.2;
+    setup.others[1].is_known.assign(9, false);
+    return setup;
+}
+
+/// Where the further ones of three cameras are in the first one's frame.
+inline std::vector<PlacedCamera> beside_first(const CameraSetup& setup) {
+    std::vector<PlacedCamera> placed;
+    for (const SingleCamera& other : setup.others) {
+        const double side = placed.empty() ? 0.5 : -0.4;
+        placed.push_back({Eigen::Translation3d(side, 0.1, 0.2) *
+                              Eigen::AngleAxisd(-0.15 * side, Vector3d(0.2, 1, 0).normalized()),
+                          other.intrinsics});
+    }
+    return placed;
+}
+
 /// The robot 3 m before the camera, or before the front of the board, whose z axis points away.
 inline Campaign before_camera(const Campaign& from, const CameraSetup& setup) {
     const auto sensor = std::make_shared<CameraSensor>(setup);
     Isometry3d place(Eigen::AngleAxisd(0.4, Vector3d(1, -2, 0.5).normalized()));
     place.translation() = Vector3d(0.1, -0.05, 0.2);
-    Campaign campaign = with_sensor(from, sensor, sensor->unknowns(place, setup.intrinsics));
+    Campaign campaign =
+        with_sensor(from, sensor, sensor->unknowns(place, setup.intrinsics, beside_first(setup)));
     campaign.nominal.world_from_base = Eigen::Translation3d(0.2, 0.1, setup.is_on_flange ? -3 : 3) *
                                        Eigen::AngleAxisd(2, Vector3d(0.3, 1, -0.2).normalized());
     return campaign;
@@ -141,6 +176,12 @@ inline std::vector<SensorCampaign> campaigns_of_every_sensor(const Chain& robot)
     all.push_back({"camera that is fixed", before_camera(points, fixed_camera())});
     all.push_back(
         {"camera on the flange, intrinsics unknown", before_camera(points, camera_on_flange())});
+    all.push_back({"three fixed cameras", before_camera(points, three_cameras())});
+    CameraSetup two_on_flange = camera_on_flange();
+    two_on_flange.others = {two_on_flange};
+    all.push_back({"two cameras on the flange", before_camera(points, two_on_flange)});
+    all.push_back(
+        {"camera before markers known roughly", before_camera(points, camera_before_cube())});
     return all;
 }
 

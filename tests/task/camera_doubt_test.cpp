@@ -80,11 +80,24 @@ TEST(MeasuredStudy, IsRefusedWhereReadingsArePixels) {
     EXPECT_THROW(study(campaign, measured, {}), InputError);
 }
 
+TEST(CameraDoubt, NamesTheScatterOfCorners) {
+    const auto& [campaign, measured] = good();
+    for (const double times : {0.5, 2.0}) {
+        CameraSetup other = setup_of(campaign);
+        other.sigma *= times;
+        const Campaign stated = with_setup(campaign, other);
+        const auto doubt = find_camera_doubt(stated, measured, registered(stated, measured));
+        ASSERT_TRUE(doubt);
+        EXPECT_NEAR(doubt->scatter, setup_of(campaign).sigma, 0.15 * setup_of(campaign).sigma);
+        EXPECT_EQ(doubt->sigma, other.sigma);
+    }
+}
+
 TEST(CameraDoubt, NamesAPrincipalPointOfAnotherImage) {
     const auto& [campaign, measured] = good();
     CameraSetup turned = setup_of(campaign);
     std::swap(turned.intrinsics.cx, turned.intrinsics.cy);
-    turned.view.image = Vector2d(1280, 960);
+    turned.image = Vector2d(1280, 960);
     turned.intrinsics.cx = 200;
     const Campaign stated = with_setup(campaign, turned);
     const auto doubt = find_camera_doubt(stated, measured, registered(stated, measured));

@@ -128,6 +128,10 @@ ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
                              const Measurements& measured);
 ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
                              const Measurements& measured, bool is_angle);
+/// What the calibrated robot's places in space are off by, m: RMS over the points of
+/// Sensor::targets(), whatever is measured of them. Of the instrument they have no noise.
+ExpectedError expected_place_error(const Campaign& campaign, const Estimate& estimate,
+                                   const RowMatrixXd& configurations);
 /// For single samples instead of means, like residuals().
 ExpectedError expected_sample_error(const Campaign& campaign, const Estimate& estimate,
                                     const Measurements& measured);

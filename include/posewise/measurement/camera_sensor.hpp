@@ -46,37 +46,55 @@ std::optional<Vector2d> undistort(const Intrinsics& intrinsics, const Vector2d& 
 
 /// What must hold for a corner to count as seen when poses are planned.
 struct CameraView {
-    std::optional<Vector2d> image;  ///< width and height, px; nothing: any place
     double most_tilt =
         1.0471975511965976;        ///< rad, between the board's normal and the line of sight
     bool is_front_plus_z = false;  ///< which side of the board bears the pattern; else minus z
     Index least_corners = 4;       ///< a pose must show
 };
 
-/// A camera that sees corners of a board.
-struct CameraSetup {
+/// A lens and what is behind it.
+struct SingleCamera {
+    Intrinsics intrinsics;  ///< unknown ones: where a search begins; 0: from what is seen
+    /// Which of Intrinsics::values() are known; empty: all.
+    std::vector<bool> is_known;
+    double sigma = 0;               ///< standard deviation of u and of v, px
+    std::optional<Vector2d> image;  ///< width and height, px; nothing: any place
+};
+
+/// A further camera: where it is in the first one's frame, and its lens.
+struct PlacedCamera {
+    Isometry3d in_first = Isometry3d::Identity();
+    Intrinsics intrinsics;
+};
+
+/// A camera that sees corners of a board, or several that are fixed to each other.
+struct CameraSetup : SingleCamera {
     /// The camera is on the flange, the board is the world; else the board is on the flange and the
     /// camera's frame is the world.
     bool is_on_flange = false;
     /// Pose of the board, or of the camera, in the flange frame; nothing: six unknowns.
     std::optional<Isometry3d> known_place;
     std::vector<Vector3d> corners;  ///< in the board's frame, m
-    Index first_corner = 1;         ///< number of the first one in files
-    Index columns = 0;              ///< corners in a row of a chessboard; 0 if it is no chessboard
+    /// Standard deviation of each coordinate of a corner about the stated one, m. Above 0: the
+    /// corners' errors are unknowns, whose sizes are known.
+    double corner_sigma = 0;
+    Index first_corner = 1;  ///< number of the first one in files
+    Index columns = 0;       ///< corners in a row of a chessboard; 0 if it is no chessboard
     /// Whether the board may be larger or smaller than stated by a factor, 1 + board.scale, which
     /// is then the last unknown.
     bool is_scale_unknown = false;
-    Intrinsics intrinsics;  ///< unknown ones: where a search begins; 0: from what is seen
-    /// Which of Intrinsics::values() are known; empty: all.
-    std::vector<bool> is_known;
-    double sigma = 0;  ///< standard deviation of u and of v, px
     CameraView view{};
+    /// Further cameras that see the same board. Where each is in the first one's frame is unknown.
+    std::vector<SingleCamera> others{};
 };
 
 /// A camera that returns the places of n corners in its image, two numbers each, u and v, in
-/// thousands of pixels (pixel_units). Corners are seen or missed by themselves. Unknowns: the pose
-/// in the flange frame of what is on it (position and rotation vector, board.x to board.rz or
-/// camera.x to camera.rz), the unknown intrinsic parameters, camera.fx to camera.k6, board.scale.
+/// thousands of pixels (pixel_units). Corners are seen or missed by themselves. Unknowns: errors of
+/// the corners' places, board.p1.x ...; the pose in the flange frame of what is on it (position and
+/// rotation vector, board.x to board.rz or camera.x to camera.rz); the unknown intrinsic
+/// parameters, camera.fx to camera.k6; of each further camera its pose in the first one's frame and
+/// the same, camera2.x to camera2.k6; board.scale. A target is a corner in one camera's image: all
+/// corners of the first camera, then those of the next.
 class CameraSensor final : public Sensor {
   public:
     /// Throws InputError if there are fewer than 4 corners, if all are in line, if a number is not
@@ -86,26 +104,47 @@ class CameraSensor final : public Sensor {
     const CameraSetup& setup() const { return setup_; }
     /// Pose of board or camera in the flange frame.
     Isometry3d place(const VectorXd& unknowns) const;
-    Intrinsics intrinsics(const VectorXd& unknowns) const;
+    /// Cameras count from 0.
+    Index camera_count() const { return 1 + static_cast<Index>(setup_.others.size()); }
+    const SingleCamera& camera(Index camera) const;
+    /// Where a camera is in the first one's frame, and its lens.
+    PlacedCamera placed(Index camera, const VectorXd& unknowns) const;
+    Intrinsics intrinsics(const VectorXd& unknowns) const { return placed(0, unknowns).intrinsics; }
     /// Which of Intrinsics::values() are unknown.
-    const std::vector<Index>& unknown_intrinsics() const { return unknown_intrinsics_; }
-    /// Largest x/z at which the lens as stated does not fold the image.
-    double widest() const { return widest_; }
+    const std::vector<Index>& unknown_intrinsics(Index camera) const {
+        return own_[static_cast<std::size_t>(camera)].intrinsics;
+    }
+    /// The first of a camera's unknowns: of the first camera intrinsic parameters, of another its
+    /// pose.
+    Index first_unknown(Index camera) const { return own_[static_cast<std::size_t>(camera)].first; }
+    /// Largest x/z at which a camera's lens as stated does not fold the image.
+    double widest(Index camera) const { return own_[static_cast<std::size_t>(camera)].widest; }
+    Index corner_count() const { return static_cast<Index>(setup_.corners.size()); }
     /// How many times as large as stated the board is.
     double board_factor(const VectorXd& unknowns) const {
         return setup_.is_scale_unknown ? 1 + unknowns[unknowns.size() - 1] : 1;
     }
-    /// The board as stated in the camera's frame.
+    /// Place of a corner (from 0) in the board's frame.
+    Vector3d corner(Index k, const VectorXd& unknowns) const {
+        const Vector3d place = board_factor(unknowns) * setup_.corners[static_cast<std::size_t>(k)];
+        if (corner_error_count() == 0) return place;
+        return place + unknowns.segment<3>(3 * k);
+    }
+    /// Unknowns that are errors of corners' places, before all others: none, or three a corner.
+    Index corner_error_count() const { return setup_.corner_sigma > 0 ? 3 * corner_count() : 0; }
+    /// The board as stated in the first camera's frame.
     Isometry3d camera_from_board(const Isometry3d& world_from_flange,
                                  const VectorXd& unknowns) const;
-    /// Whether a plane board's origin is seen from behind its front.
-    bool is_seen_from_back(const Isometry3d& world_from_flange, const VectorXd& unknowns) const;
-    /// Unknowns for a pose of board or camera and intrinsic parameters.
-    VectorXd unknowns(const Isometry3d& place, const Intrinsics& intrinsics) const;
+    /// Whether a camera sees a plane board's origin from behind its front.
+    bool is_seen_from_back(Index camera, const Isometry3d& world_from_flange,
+                           const VectorXd& unknowns) const;
+    /// Unknowns for a pose of board or camera and intrinsic parameters, and further cameras.
+    VectorXd unknowns(const Isometry3d& place, const Intrinsics& intrinsics,
+                      const std::vector<PlacedCamera>& others = {}) const;
 
     /// The origin of board or camera.
     const Targets& targets() const override { return origin_; }
-    Index target_count() const override { return static_cast<Index>(setup_.corners.size()); }
+    Index target_count() const override { return camera_count() * corner_count(); }
     Index row_count() const override { return 2 * target_count(); }
     bool is_angle(Index) const override { return true; }
     bool has_pixels() const override { return true; }
@@ -113,6 +152,9 @@ class CameraSensor final : public Sensor {
     std::vector<std::string> unknown_names() const override;
     std::vector<bool> unknown_is_angle() const override;
     std::vector<const AmountUnits*> unknown_units() const override;
+    VectorXd unknown_sizes() const override {
+        return VectorXd::Constant(corner_error_count(), setup_.corner_sigma);
+    }
     using Sensor::covariance;
     using Sensor::predict;
     void predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
@@ -131,9 +173,7 @@ class CameraSensor final : public Sensor {
     void view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                          Eigen::Ref<VectorXd> clearances) const override;
     Index least_in_view() const override { return setup_.view.least_corners; }
-    std::vector<NoiseNumber> noise_numbers() const override {
-        return {{"sigma_px", {setup_.sigma}}};
-    }
+    std::vector<NoiseNumber> noise_numbers() const override;
     SensorWords words() const override;
     /// Four points of what is on the flange: its origin and one on each axis, from the board's pose
     /// in the camera's frame by the corners seen.
@@ -143,18 +183,24 @@ class CameraSensor final : public Sensor {
 
   private:
     bool has_unknown_place() const { return !setup_.known_place; }
-    Index place_count() const { return has_unknown_place() ? 6 : 0; }
-    Index intrinsics_count() const { return static_cast<Index>(unknown_intrinsics_.size()); }
-    ObservedPoints points_with(const Intrinsics& intrinsics) const;
+    ObservedPoints points_with(const std::vector<PlacedCamera>& cameras) const;
+
+    struct OwnUnknowns {
+        Index first = 0;
+        std::vector<Index> intrinsics;  ///< indices among Intrinsics::values()
+        double widest = 1e3;
+    };
 
     CameraSetup setup_;
-    Targets origin_;                         ///< where what is on the flange has its origin
-    std::vector<Index> unknown_intrinsics_;  ///< indices among Intrinsics::values()
-    std::optional<Vector3d> normal_;         ///< away from the front of a plane board, in its frame
-    double widest_ = 1e3;
+    Targets origin_;                  ///< where what is on the flange has its origin
+    std::optional<Vector3d> normal_;  ///< away from the front of a plane board, in its frame
+    std::vector<OwnUnknowns> own_;    ///< of each camera
+    Index unknown_count_ = 0;
 };
 
 /// Number of the first target in files that list corners, CameraSetup::first_corner.
 Index first_corner(const Sensor& sensor);
+/// How many cameras a sensor has: 1 if it is none.
+Index camera_count(const Sensor& sensor);
 
 }  // namespace posewise

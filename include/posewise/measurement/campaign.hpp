@@ -141,15 +141,16 @@ std::vector<const AmountUnits*> parameter_units(const Campaign& campaign);
 /// names a parameter the campaign does not have.
 VectorXd parameter_scale(const Campaign& campaign);
 
-/// Parameters [begin, begin + count) have a prior: none, the robot's errors, or also base and
-/// sensor where an earlier calibration covers them.
+/// Parameters [begin, begin + count) have a prior: the robot's errors where their spread is one,
+/// the sensor's unknowns whose sizes are known, also base and all of the sensor where an earlier
+/// calibration covers them.
 Index prior_begin(const Campaign& campaign);
 Index prior_count(const Campaign& campaign);
 
 /// Prior information in scaled parameters, parameter_count() square: 1 for each robot error if the
-/// spread is the prior, the inverse covariance of an earlier calibration if that is; 0 for
-/// parameters without prior. Throws InputError for a prior of other parameters, or a covariance
-/// that is not positive definite.
+/// spread is the prior and for the sensor's unknowns of known size, the inverse covariance of an
+/// earlier calibration if that is; 0 for parameters without prior. Throws InputError for a prior of
+/// other parameters, or a covariance that is not positive definite.
 MatrixXd prior_information(const Campaign& campaign);
 
 /// Parameters after a small step (parameter_count(), m and rad): the base turns by exp([phi]x)

@@ -43,13 +43,16 @@ std::string target_numbers(const SeenTargets& is_seen);
 inline constexpr double tracker_ball_radius = 0.01905;
 
 /// Points fixed to the flange. Each coordinate in the flange frame is known, or an unknown of the
-/// sensor that observes them; the targets' unknowns come first among the sensor's.
+/// sensor that observes them; the targets' unknowns come first among the sensor's, or after
+/// `unknowns_before`.
 class Targets {
   public:
     /// Whole positions, known (m) or not. Throws InputError if there is none or one is not finite.
-    explicit Targets(const std::vector<std::optional<Vector3d>>& known_positions);
+    explicit Targets(const std::vector<std::optional<Vector3d>>& known_positions,
+                     Index unknowns_before = 0);
     /// Positions (m) with only the marked coordinates known; the others are ignored.
-    Targets(std::vector<Vector3d> positions, std::vector<std::array<bool, 3>> is_known);
+    Targets(std::vector<Vector3d> positions, std::vector<std::array<bool, 3>> is_known,
+            Index unknowns_before = 0);
 
     /// The points as centres of balls with this radius, m. Throws InputError if it is negative, not
     /// finite or above 1 m.
@@ -62,7 +65,7 @@ class Targets {
     /// Names of the unknown coordinates: "target1.x", ...
     std::vector<std::string> unknown_names() const;
 
-    /// Index of a coordinate among the unknowns; -1 if it is known.
+    /// Index of a coordinate among the sensor's unknowns; -1 if it is known.
     Index unknown_index(Index target, Index axis) const {
         return unknown_index_[static_cast<std::size_t>(target)][static_cast<std::size_t>(axis)];
     }
@@ -148,8 +151,7 @@ class Sensor {
 
     // ---- What a sensor must define ----
 
-    /// The points on the flange that it observes. Their unknown coordinates come first among the
-    /// sensor's unknowns.
+    /// The points on the flange that it observes.
     virtual const Targets& targets() const = 0;
     /// Length of one complete observation, in the order of observation_names().
     virtual Index row_count() const = 0;
@@ -200,6 +202,10 @@ class Sensor {
     virtual std::vector<bool> unknown_is_angle() const;
     /// Units of each unknown: of a length or an angle by default.
     virtual std::vector<const AmountUnits*> unknown_units() const;
+
+    /// Standard deviations of the first unknowns about 0, where these are errors of something
+    /// stated: their priors, as the sizes of the robot's errors are. Empty: of none.
+    virtual VectorXd unknown_sizes() const { return {}; }
 
     // ---- What is seen or missed as a whole: the targets by default ----
 

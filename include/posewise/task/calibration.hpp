@@ -159,6 +159,8 @@ struct Calibration {
     /// estimated_geometry() draws (nothing where it cannot, and for contacts).
     ExpectedError expected;
     std::optional<ExpectedError> expected_workspace;
+    /// Over the same workspace, of the place in space of what a camera sees, m.
+    std::optional<ExpectedError> expected_place{};
     /// At CalibrationOptions::predicted: for distances, for angles.
     std::vector<ErrorPrediction> predicted;
     std::optional<double> limit;            ///< CalibrationOptions::limit

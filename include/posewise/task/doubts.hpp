@@ -325,12 +325,17 @@ struct CameraDoubt {
     double square = 0;         ///< side of a chessboard's squares as stated, m; 0: it is none
     double misfit = 0;         ///< RMS of what is left at the corners, 1000 px
     double scaled_misfit = 0;  ///< with that factor
+    Index camera = 0;          ///< whose principal point it is, from 0
     /// Principal point, if it is far from the middle of the image (or of what is seen), px.
     std::optional<std::array<double, 2>> principal_point{};
     std::array<double, 2> middle{};
     bool is_of_image = false;  ///< whose size is stated; else the middle of what is seen
     /// Most views show a plane board from behind its stated front.
     bool is_seen_from_back = false;
+    /// Standard deviation of u and of v about any pose of the board, px, if it is another one than
+    /// the sensor's; else 0.
+    double scatter = 0;
+    double sigma = 0;  ///< as stated, px
 };
 /// Of corners in images; `registered` is as for find_misfit().
 std::optional<CameraDoubt> find_camera_doubt(const Campaign& campaign,

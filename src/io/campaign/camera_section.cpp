@@ -86,7 +86,7 @@ CameraFile read_stated(const YamlValue& value, const YamlMap& map) {
     return read_camera_file((campaign.parent_path() / file->text()).string(), *file);
 }
 
-void read_intrinsics(const YamlValue& value, CameraSetup& setup) {
+void read_intrinsics(const YamlValue& value, SingleCamera& setup) {
     const YamlMap map(value, keys::camera, "intrinsics");
     const CameraFile camera = read_stated(value, map);
     setup.intrinsics = camera.intrinsics;
@@ -105,12 +105,12 @@ void read_intrinsics(const YamlValue& value, CameraSetup& setup) {
         throw value.error("states one focal length; must state both fx_px and fy_px, or none");
     }
     if (!camera.image) return;
-    if (!setup.view.image) setup.view.image = camera.image;
-    if (*setup.view.image == *camera.image) return;
+    if (!setup.image) setup.image = camera.image;
+    if (*setup.image == *camera.image) return;
     throw value.error(fmt::format(
         "is of an image of {:g} by {:g} px, image_px is {:g} by {:g}; must be of the same image, "
         "neither scaled nor turned",
-        camera.image->x(), camera.image->y(), setup.view.image->x(), setup.view.image->y()));
+        camera.image->x(), camera.image->y(), setup.image->x(), setup.image->y()));
 }
 
 Index read_count(const YamlValue& value) {
@@ -161,6 +161,9 @@ void read_board(const YamlValue& value, CameraSetup& setup) {
     }
     setup.corners = points ? read_points(*points) : chessboard(board, value);
     if (!points) setup.columns = read_count(board.require("columns"));
+    if (const auto sigma = board.find_measure("sigma")) {
+        setup.corner_sigma = read_positive(*sigma, false, 0.1);
+    }
     const auto first = board.find("first_point");
     if (!first) return;
     setup.first_corner = static_cast<Index>(first->natural_number());
@@ -189,14 +192,42 @@ void read_view(const YamlValue& value, CameraSetup& setup) {
     }
 }
 
-void read_image(const YamlMap& sensor, CameraSetup& setup) {
+void read_image(const YamlMap& sensor, SingleCamera& setup) {
     const auto image = sensor.find_measure("image");
     if (!image) return;
     const VectorXd size = px_per_kpx * image->list_to_si(2);
     if (!(size.minCoeff() >= 1)) {
         throw image->value.error("must be a width and a height, each at least 1 px");
     }
-    setup.view.image = size;
+    setup.image = size;
+}
+
+/// Cameras beside the first one; whether the file says where each is.
+std::vector<PlacedCamera> read_others(const YamlValue& list, CameraSetup& setup, bool& are_placed) {
+    constexpr std::size_t most = 16;
+    const std::vector<YamlValue> values = list.list();
+    if (values.empty() || values.size() > most) {
+        throw list.error(fmt::format("lists {} cameras; must be from 1 to {} beside the first one",
+                                     values.size(), most));
+    }
+    std::vector<PlacedCamera> placed;
+    for (const YamlValue& value : values) {
+        const YamlMap map(value, keys::camera, "other_cameras");
+        SingleCamera camera;
+        const auto sigma = map.find_measure("sigma");
+        camera.sigma = sigma ? px_per_kpx * read_positive(*sigma) : setup.sigma;
+        read_image(map, camera);
+        read_intrinsics(map.require("intrinsics"), camera);
+        placed.push_back({Isometry3d::Identity(), camera.intrinsics});
+        if (const auto place = map.find("place")) {
+            placed.back().in_first = read_frame(YamlMap(*place, keys::places, "place"));
+        } else {
+            are_placed = false;
+        }
+        are_placed = are_placed && camera.intrinsics.fx > 0;
+        setup.others.push_back(std::move(camera));
+    }
+    return placed;
 }
 
 }  // namespace
@@ -223,11 +254,15 @@ SensorSection read_camera(const YamlValue& value) {
         const auto known = map.find("known");
         if (known && known->boolean()) setup.known_place = place;
     }
+    bool are_placed = place_value.has_value() && setup.intrinsics.fx > 0;
+    std::vector<PlacedCamera> others;
+    if (const auto list = sensor.find("other_cameras")) {
+        others = read_others(*list, setup, are_placed);
+    }
     try {
         auto camera = std::make_shared<CameraSensor>(std::move(setup));
-        VectorXd unknowns = camera->unknowns(place, camera->setup().intrinsics);
-        const bool has_intrinsics = camera->setup().intrinsics.fx > 0;
-        return {std::move(camera), std::move(unknowns), place_value && has_intrinsics};
+        VectorXd unknowns = camera->unknowns(place, camera->setup().intrinsics, others);
+        return {std::move(camera), std::move(unknowns), are_placed};
     } catch (const InputError& e) {
         throw board.error(std::string("cannot be used: ") + e.what());
     }

@@ -7,6 +7,17 @@
 #include "core/text.hpp"
 
 namespace posewise::detail {
+namespace {
+
+/// "7", or of several cameras "7 of camera 2".
+std::string name_of_corner(const Sensor& sensor, Index target) {
+    const Index cameras = camera_count(sensor);
+    const Index corners = sensor.target_count() / cameras;
+    const std::string number = std::to_string(first_corner(sensor) + target % corners);
+    return cameras == 1 ? number : fmt::format("{} of camera {}", number, target / corners + 1);
+}
+
+}  // namespace
 
 void CornerCollector::add(const Corner& corner) {
     const auto [found, is_new] = index_of_.emplace(corner.id + '\n' + corner.name, samples_.size());
@@ -31,7 +42,7 @@ void CornerCollector::add(const Corner& corner) {
         throw input_error_at(
             corner.locations.front(),
             fmt::format("corner {} of configuration {} occurs twice{}; keep one",
-                        corner.number + first_corner(*campaign_.sensor), quote(corner.id),
+                        name_of_corner(*campaign_.sensor, corner.number), quote(corner.id),
                         corner.name.empty() ? " (views of one pose need a column sample)"
                                             : " in sample " + quote(corner.name)));
     }

@@ -19,8 +19,10 @@ inline constexpr std::string_view visible_targets = "visible_targets";
 /// has_contacts(); it stands for the columns observed, and for visible_targets.
 inline constexpr std::string_view contact = "socket";
 
-/// Of a row that is one corner in an image: the corner's number.
+/// Of a row that is one corner in an image: the corner's number, and the camera's where there are
+/// several.
 inline constexpr std::string_view point_column = "point";
+inline constexpr std::string_view camera_column = "camera";
 
 /// Of a row of configurations: what the robot is sent there for.
 inline constexpr std::string_view purpose_column = "purpose";
@@ -49,6 +51,7 @@ enum class Role {
     Purpose,
     Contact,
     Point,
+    Camera,
     Joint,  ///< or a measured torque: a number of the configuration
     Observation,
     Orientation,

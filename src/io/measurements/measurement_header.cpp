@@ -24,6 +24,7 @@ class HeaderReader {
           has_orientation_(campaign.sensor->has_orientation()),
           has_contact_(campaign.sensor->has_contacts()),
           target_count_(campaign.sensor->target_count()),
+          has_cameras_(form_ == Form::RowEachCorner && camera_count(*campaign.sensor) > 1),
           examples_{"config"} {
         if (!is_optional(Role::Sample)) examples_.emplace_back("sample");
         for (const WantedColumn& column : wanted_) {
@@ -31,6 +32,7 @@ class HeaderReader {
         }
         if (has_contact_) examples_.emplace_back(contact);
         if (form_ == Form::RowEachCorner) examples_.emplace_back(point_column);
+        if (has_cameras_) examples_.emplace_back(camera_column);
     }
 
     Header read() const {
@@ -123,6 +125,7 @@ class HeaderReader {
         if (name == purpose_column) return Column{Role::Purpose};
         if (name == contact && has_contact_) return Column{Role::Contact};
         if (name == point_column && form_ == Form::RowEachCorner) return Column{Role::Point};
+        if (name == camera_column && form_ == Form::RowEachCorner) return Column{Role::Camera};
         if (content_ == Content::JointsAndObservations) {
             if (name == time_column || name == time_seconds_column) return Column{Role::Time};
             if (name == temperature_column) return Column{Role::Temperature};
@@ -241,6 +244,7 @@ class HeaderReader {
         if (form_ == Form::RowEachCorner && !has(Role::Point, 0)) {
             missing.emplace_back(point_column);
         }
+        if (has_cameras_ && !has(Role::Camera, 0)) missing.emplace_back(camera_column);
         if (missing.empty()) return;
         for (const std::size_t field : unknown) {
             if (is_near(field, missing)) throw unknown_error(field);
@@ -287,6 +291,7 @@ class HeaderReader {
     bool has_orientation_;
     bool has_contact_;
     Index target_count_;
+    bool has_cameras_;  ///< several, of which a row of one corner must name its own
     std::vector<std::string> examples_;
 };
 

@@ -49,6 +49,7 @@ class RowReader {
             const auto index = static_cast<std::size_t>(columns_[field].index);
             if (columns_[field].role == Role::Purpose) field_of_purpose_ = field;
             if (columns_[field].role == Role::Point) field_of_point_ = field;
+            if (columns_[field].role == Role::Camera) field_of_camera_ = field;
             if (columns_[field].role == Role::Joint) field_of_joint_[index] = field;
             if (columns_[field].role == Role::Observation) field_of_observation_[index] = field;
             if (columns_[field].role == Role::Orientation) {
@@ -168,6 +169,7 @@ class RowReader {
             case Role::Time:         // by note_conditions()
             case Role::Temperature:  // likewise
             case Role::Point:        // by read_corner()
+            case Role::Camera:       // likewise
             case Role::Unused:
                 return;
         }
@@ -294,30 +296,54 @@ class RowReader {
             row_.observation[static_cast<Index>(k)] = read_number(field_of_observation_[k]);
             check_distance(k);
         }
-        if (camera_ != nullptr) check_in_image(row_.observation.segment<2>(2 * target), first);
+        if (camera_ != nullptr) {
+            check_in_image(row_.observation.segment<2>(2 * target),
+                           target / camera_->corner_count(), first);
+        }
         if (!orientation_fields_.empty()) row_.observation.segment<3>(3) = read_orientation();
     }
 
-    detail::Corner read_corner() {
-        const std::size_t field = *field_of_point_;
-        const Index first = first_corner(*campaign_.sensor);
-        const Index last = first + campaign_.sensor->target_count() - 1;
+    /// A whole number from `first` to `last`.
+    Index read_count(std::size_t field, Index first, Index last, const char* of_what,
+                     const char* at_zero) const {
         const detail::ParsedNumber number = detail::parse_number(csv_.fields()[field]);
-        if (!number.ok() || number.value < static_cast<double>(first) ||
-            number.value > static_cast<double>(last) || number.value != std::floor(number.value)) {
-            throw input_error_at(
-                csv_.locate(field),
-                fmt::format("{} is {}; must be the number of a corner of the board, {} to {}{}",
-                            detail::point_column, detail::quote(csv_.fields()[field]), first, last,
-                            number.ok() && number.value == 0 && first == 1
-                                ? " (board.first_point: 0 in the campaign counts from 0)"
-                                : ""));
+        if (number.ok() && number.value >= static_cast<double>(first) &&
+            number.value <= static_cast<double>(last) && number.value == std::floor(number.value)) {
+            return static_cast<Index>(number.value);
         }
-        detail::Corner corner{
-            row_.id, row_.name, row_.joints, static_cast<Index>(number.value) - first, {}, {}};
+        throw input_error_at(
+            csv_.locate(field),
+            fmt::format(
+                "{} is {}; must be the number of {}, {} to {}{}",
+                columns_[field].role == Role::Point ? detail::point_column : detail::camera_column,
+                detail::quote(csv_.fields()[field]), of_what, first, last,
+                number.ok() && number.value == 0 && first == 1 ? at_zero : ""));
+    }
+
+    /// Of the row at hand, from 0.
+    Index read_camera() const {
+        if (!field_of_camera_) return 0;
+        const Index count = camera_count(*campaign_.sensor);
+        return read_count(*field_of_camera_, 1, count,
+                          count == 1 ? "the campaign's only camera (key sensor.other_cameras "
+                                       "states more)"
+                                     : "a camera",
+                          " (cameras count from 1)") -
+               1;
+    }
+
+    detail::Corner read_corner() {
+        const Index camera = read_camera();
+        const Index first = first_corner(*campaign_.sensor);
+        const Index corners = campaign_.sensor->target_count() / camera_count(*campaign_.sensor);
+        const Index number =
+            read_count(*field_of_point_, first, first + corners - 1, "a corner of the board",
+                       " (board.first_point: 0 in the campaign counts from 0)");
+        detail::Corner corner{row_.id, row_.name, row_.joints, camera * corners + number - first,
+                              {},      {}};
         corner.place << read_number(field_of_observation_[0]),
             read_number(field_of_observation_[1]);
-        check_in_image(corner.place, 0);
+        check_in_image(corner.place, camera, 0);
         for (const std::size_t joint : field_of_joint_)
             corner.locations.push_back(csv_.locate(joint));
         return corner;
@@ -325,11 +351,11 @@ class RowReader {
 
     /// To a pixel, or as far as its noise takes a corner. `first`: the field's index among the
     /// observed numbers.
-    void check_in_image(const Vector2d& place, std::size_t first) const {
-        if (camera_ == nullptr || !camera_->setup().view.image) return;
-        const auto& image = camera_->setup().view.image;
+    void check_in_image(const Vector2d& place, Index camera, std::size_t first) const {
+        if (camera_ == nullptr || !camera_->camera(camera).image) return;
+        const auto& image = camera_->camera(camera).image;
         const Vector2d px = 1e3 * place;
-        const double margin = std::max(1.0, 5 * camera_->setup().sigma);
+        const double margin = std::max(1.0, 5 * camera_->camera(camera).sigma);
         const auto is_inside = [&](double value, double size) {
             return value >= -margin && value <= size + margin;
         };
@@ -413,6 +439,7 @@ class RowReader {
     std::vector<std::size_t> field_of_observation_;
     std::optional<std::size_t> field_of_purpose_;
     std::optional<std::size_t> field_of_point_;
+    std::optional<std::size_t> field_of_camera_;
     const CameraSensor* camera_;
     detail::CornerCollector corners_;
     bool is_via_ = false;  ///< the row at hand

@@ -47,11 +47,14 @@ std::string observation_cells(const Sensor& sensor, const Measurements& measurem
 void write_corners(const Sensor& sensor, const Measurements& measurements, Index sample,
                    const std::string& before, std::string& text) {
     const Index first = first_corner(sensor);
-    for (Index corner = 0; corner < measurements.is_seen.cols(); ++corner) {
-        if (!measurements.is_seen(sample, corner)) continue;
-        const VectorXd place = 1e3 * measurements.observation(sample, corner).transpose();
-        fmt::format_to(std::back_inserter(text), "{},{},{},{}\n", before, place[0], place[1],
-                       first + corner);
+    const Index cameras = camera_count(sensor);
+    const Index corners = measurements.is_seen.cols() / cameras;
+    for (Index target = 0; target < measurements.is_seen.cols(); ++target) {
+        if (!measurements.is_seen(sample, target)) continue;
+        const VectorXd place = 1e3 * measurements.observation(sample, target).transpose();
+        fmt::format_to(std::back_inserter(text), "{},{},{},{}{}\n", before, place[0], place[1],
+                       first + target % corners,
+                       cameras > 1 ? fmt::format(",{}", target / corners + 1) : "");
     }
 }
 
@@ -98,6 +101,7 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
     const bool has_contact = campaign.sensor->has_contacts();
     if (has_contact) fmt::format_to(out, ",{}", detail::contact);
     if (has_corners) fmt::format_to(out, ",{}", detail::point_column);
+    if (camera_count(*campaign.sensor) > 1) fmt::format_to(out, ",{}", detail::camera_column);
     text += '\n';
     for (Index i = 0; i < measurements.configuration_count(); ++i) {
         const auto k = static_cast<std::size_t>(i);

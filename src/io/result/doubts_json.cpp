@@ -62,10 +62,15 @@ Json camera_to_json(const CameraDoubt& doubt) {
         json["scaled_rms_px"] = 1e3 * doubt.scaled_misfit;
     }
     if (doubt.principal_point) {
+        json["camera"] = doubt.camera + 1;
         json["principal_point_px"] = *doubt.principal_point;
         json["middle_px"] = doubt.middle;
     }
     if (doubt.is_seen_from_back) json["is_seen_from_back"] = true;
+    if (doubt.scatter > 0) {
+        json["scatter_px"] = doubt.scatter;
+        json["sigma_px"] = doubt.sigma;
+    }
     return json;
 }
 

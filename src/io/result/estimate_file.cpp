@@ -133,17 +133,22 @@ Json predictions_to_json(const std::vector<ErrorPrediction>& predictions) {
 
 /// What points not used are expected to be off by, mm (mrad where no length is measured).
 Json expected_to_json(const Calibration& calibration) {
-    const std::string unit = detail::error_suffix(calibration.campaign.sensor->main_units());
-    const auto one = [&](const ExpectedError& error) {
+    const AmountUnits& own = calibration.campaign.sensor->main_units();
+    const auto one = [](const ExpectedError& error, const AmountUnits& units) {
+        const std::string unit = detail::error_suffix(units);
         return Json{{"parameters" + unit, mm * error.parameters},
                     {"left_over" + unit, mm * error.model},
                     {"noise" + unit, mm * error.noise},
                     {"total" + unit, mm * error.total()}};
     };
-    Json json = {{"at_measured", one(calibration.expected)}};
-    if (const auto& error = calibration.expected_workspace) json["over_workspace"] = one(*error);
+    Json json = {{"at_measured", one(calibration.expected, own)}};
+    if (const auto& error = calibration.expected_workspace)
+        json["over_workspace"] = one(*error, own);
+    if (const auto& error = calibration.expected_place) {
+        json["of_places"] = one(*error, length_units);
+    }
     const auto add = [&](const std::optional<Judgement>& judged, const char* where) {
-        if (judged && judged->expected) json[where] = one(*judged->expected);
+        if (judged && judged->expected) json[where] = one(*judged->expected, *judged->units);
     };
     add(calibration.verification, "at_verification");
     add(calibration.left_out, "at_left_out");

@@ -264,19 +264,27 @@ Json map_to_json(const CorrectionMap& map) {
             {"with_map", map_error_to_json(map.with_map)}};
 }
 
+Json intrinsics_to_json(const Intrinsics& camera) {
+    Json json;
+    const VectorXd values = camera.values();
+    const auto names = camera.names();
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const double value = values[static_cast<Index>(k)];
+        const bool is_px = k < 4;
+        json[is_px ? names[k] + "_px" : names[k]] = is_px ? pixel_units.to_reading(value) : value;
+    }
+    return json;
+}
+
 Json camera_to_json(const CameraPlaces& places) {
     Json json;
     json["on"] = places.is_on_flange ? "flange" : "base";
     json["place"] = detail::base_to_json(places.camera);
     json["board"] = detail::base_to_json(places.board);
-    if (!places.intrinsics) return json;
-    const VectorXd values = places.intrinsics->values();
-    const auto names = places.intrinsics->names();
-    for (std::size_t k = 0; k < names.size(); ++k) {
-        const double value = values[static_cast<Index>(k)];
-        const bool is_px = k < 4;
-        json["intrinsics"][is_px ? names[k] + "_px" : names[k]] =
-            is_px ? pixel_units.to_reading(value) : value;
+    if (places.intrinsics) json["intrinsics"] = intrinsics_to_json(*places.intrinsics);
+    for (const PlacedCamera& other : places.others) {
+        json["others"].push_back({{"in_first", detail::base_to_json(other.in_first)},
+                                  {"intrinsics", intrinsics_to_json(other.intrinsics)}});
     }
     return json;
 }

@@ -15,8 +15,8 @@ const std::map<ChanceVerdict, const char*> chances{{ChanceVerdict::Within, "with
                                                    {ChanceVerdict::Below, "below chance"},
                                                    {ChanceVerdict::Beyond, "beyond chance"}};
 
-Json group_to_json(const Calibration& calibration, const char* poses, const JudgedGroup& group) {
-    const std::string unit = error_suffix(calibration.campaign.sensor->main_units());
+Json group_to_json(const Calibration& calibration, const char* poses, const JudgedGroup& group,
+                   const std::string& unit) {
     const auto& interval = group.interval;
     Json json = {
         {"poses", poses},
@@ -80,7 +80,8 @@ void add_judgements(Json& accuracy, const Calibration& calibration) {
         if (!judgement) return;
         accuracy[poses] = metrics_to_json(judgement->found);
         for (const JudgedGroup& group : judgement->groups) {
-            judged.push_back(group_to_json(calibration, poses, group));
+            judged.push_back(
+                group_to_json(calibration, poses, group, error_suffix(*judgement->units)));
         }
     };
     add(calibration.verification, "verification");

@@ -25,24 +25,35 @@ std::string opencv_matrix(const std::string& name, const RowMatrixXd& matrix) {
                        fmt::join(numbers.data(), numbers.data() + numbers.size(), ",\n       "));
 }
 
+/// `prefix`: "camera" writes camera_matrix, "camera2" camera2_matrix.
+std::string intrinsics_text(const Intrinsics& camera, const std::string& prefix) {
+    RowMatrixXd K(3, 3);
+    K << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
+    const bool is_fisheye = camera.distortion == Distortion::Fisheye;
+    const std::string own = prefix == "camera" ? "" : prefix + '_';
+    std::vector<double> coefficients = camera.coefficients;
+    if (coefficients.empty()) coefficients.assign(5, 0);
+    return opencv_matrix(prefix + "_matrix", K) +
+           fmt::format("{}distortion_model: {}\n", own, is_fisheye ? "fisheye" : "plumb_bob") +
+           opencv_matrix(
+               own + "distortion_coefficients",
+               Eigen::Map<const RowMatrixXd>(coefficients.data(), 1, std::ssize(coefficients)));
+}
+
+/// "camera2" of the first further one.
+std::string name_of_other(std::size_t k) { return fmt::format("camera{}", k + 2); }
+
 std::string opencv_text(const CameraPlaces& places, const std::string& title) {
     std::string text = fmt::format("%YAML:1.0\n---\n# {}; frames in m\n", escape_controls(title));
     if (places.image) {
         text += fmt::format("image_width: {:g}\nimage_height: {:g}\n", places.image->x(),
                             places.image->y());
     }
-    if (places.intrinsics) {
-        const Intrinsics& camera = *places.intrinsics;
-        RowMatrixXd K(3, 3);
-        K << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
-        const bool is_fisheye = camera.distortion == Distortion::Fisheye;
-        text += opencv_matrix("camera_matrix", K);
-        text += fmt::format("distortion_model: {}\n", is_fisheye ? "fisheye" : "plumb_bob");
-        std::vector<double> coefficients = camera.coefficients;
-        if (coefficients.empty()) coefficients.assign(5, 0);
-        text += opencv_matrix(
-            "distortion_coefficients",
-            Eigen::Map<const RowMatrixXd>(coefficients.data(), 1, std::ssize(coefficients)));
+    if (places.intrinsics) text += intrinsics_text(*places.intrinsics, "camera");
+    for (std::size_t k = 0; k < places.others.size(); ++k) {
+        const std::string name = name_of_other(k);
+        text += intrinsics_text(places.others[k].intrinsics, name);
+        text += opencv_matrix("camera_from_" + name, places.others[k].in_first.matrix());
     }
     text += opencv_matrix(places.is_on_flange ? "flange_from_camera" : "base_from_camera",
                           places.camera.matrix());
@@ -74,6 +85,10 @@ std::string urdf_text(const CameraPlaces& places, const CampaignFile& file) {
     const std::string of_board = link_of(file, !places.is_on_flange);
     std::string text = fmt::format("<robot name=\"camera\">\n  <link name=\"{}\"/>\n", of_camera);
     text += joint_text(of_camera, camera_frame, places.camera);
+    for (std::size_t k = 0; k < places.others.size(); ++k) {
+        text += joint_text(camera_frame, name_of_other(k) + "_optical_frame",
+                           places.others[k].in_first);
+    }
     text += fmt::format("  <link name=\"{}\"/>\n", of_board);
     return text + joint_text(of_board, board_frame, places.board) + "</robot>\n";
 }
@@ -85,8 +100,8 @@ bool is_yaml(const std::string& path) { return path.ends_with(".yaml") || path.e
 std::optional<CameraPlaces> camera_places(const Campaign& campaign, const Parameters& found) {
     const Isometry3d base_from_world = found.world_from_base.inverse();
     const auto with = [&](bool is_on_flange, const Isometry3d& on_flange) {
-        return is_on_flange ? CameraPlaces{true, on_flange, base_from_world, {}, {}}
-                            : CameraPlaces{false, base_from_world, on_flange, {}, {}};
+        return is_on_flange ? CameraPlaces{true, on_flange, base_from_world, {}, {}, {}}
+                            : CameraPlaces{false, base_from_world, on_flange, {}, {}, {}};
     };
     if (const auto* const poses = dynamic_cast<const PoseSensor*>(campaign.sensor.get())) {
         return with(poses->record().is_made_at_body, poses->tool(found.sensor));
@@ -96,7 +111,10 @@ std::optional<CameraPlaces> camera_places(const Campaign& campaign, const Parame
     auto places =
         std::make_optional(with(camera->setup().is_on_flange, camera->place(found.sensor)));
     places->intrinsics = camera->intrinsics(found.sensor);
-    places->image = camera->setup().view.image;
+    places->image = camera->setup().image;
+    for (Index c = 1; c < camera->camera_count(); ++c) {
+        places->others.push_back(camera->placed(c, found.sensor));
+    }
     return places;
 }
 

@@ -222,7 +222,10 @@ void calibrate_with(Work& work, Calibration& result) {
         result.campaign = with_model_error(work.whole, result.estimate);
     }
     result.expected = expected_error(result.campaign, result.estimate, work.used);
-    result.expected_workspace = detail::expected_workspace_error(result.campaign, result.estimate);
+    if (const auto error = detail::expected_workspace_error(result.campaign, result.estimate)) {
+        result.expected_workspace = error->readings;
+        result.expected_place = error->place;
+    }
     constexpr double far_more = 2;
     const auto& workspace = result.expected_workspace;
     if (workspace && result.expected.is_by_few_poses() &&

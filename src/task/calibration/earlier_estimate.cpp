@@ -63,7 +63,8 @@ Prior make_prior(const Campaign& campaign, const Campaign& reduced, const Earlie
     Prior prior{reduced.nominal, !earlier.use.has_new_base, !earlier.use.has_new_targets, {}};
     std::vector<Index> told = numbers_of(mark_known(campaign, known), false);
     if (earlier.use.has_new_targets) {
-        told.resize(told.size() - static_cast<std::size_t>(reduced.nominal.sensor.size()));
+        const Index kept = reduced.sensor->unknown_sizes().size();
+        told.resize(told.size() - static_cast<std::size_t>(reduced.nominal.sensor.size() - kept));
     }
     if (earlier.use.has_new_base)
         told.erase(told.begin(), told.begin() + base_parameter_count(reduced));

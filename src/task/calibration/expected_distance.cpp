@@ -51,14 +51,17 @@ double largest_left_over(const Campaign& campaign, const Parameters& at,
     const Index of_base = base_parameter_count(complete);
     const Index of_robot = complete.robot.parameter_count();
     const Index of_sensor = J.cols() - of_base - of_robot;
-    MatrixXd fitted(J.rows(), of_base + of_sensor);
-    fitted << J.leftCols(of_base), J.rightCols(of_sensor);
+    const Index told = complete.sensor->unknown_sizes().size();
+    MatrixXd fitted = MatrixXd::Zero(J.rows() + told, of_base + of_sensor);
+    fitted.topRows(J.rows()) << J.leftCols(of_base), J.rightCols(of_sensor);
+    fitted.block(J.rows(), of_base, told, told).setIdentity();  // their prior
     // Coordinates of the robot are standard normal; base and targets follow them.
     MatrixXd along = MatrixXd::Zero(J.cols(), of_robot);
     along.middleRows(of_base, of_robot).setIdentity();
     if (fitted.cols() > 0) {
-        const MatrixXd followed =
-            fitted.colPivHouseholderQr().solve(J.middleCols(of_base, of_robot));
+        MatrixXd by_robot = MatrixXd::Zero(fitted.rows(), of_robot);
+        by_robot.topRows(J.rows()) = J.middleCols(of_base, of_robot);
+        const MatrixXd followed = fitted.colPivHouseholderQr().solve(by_robot);
         along.topRows(of_base) = -followed.topRows(of_base);
         along.bottomRows(of_sensor) = -followed.bottomRows(of_sensor);
     }

@@ -114,6 +114,7 @@ JudgedGroup judge_group(const Judge& judge, PoseGroup group, const std::vector<I
 Judgement judge(const Judge& judge, const Measurements& others) {
     Judgement judgement;
     judgement.found = make_metrics(judge.campaign, judge.estimate.parameters, others);
+    judgement.units = &judge.campaign.sensor->main_units();
     if (judge.knows_expected) {
         judgement.expected = expected_sample_error(judge.campaign, judge.estimate, others);
     }

@@ -362,7 +362,7 @@ ChoiceProblem state_choice(const Campaign& campaign, Candidates candidates,
     add_unchecked_bodies(problem, campaign);
     problem.checksum = checksum_of(problem, candidates);
     problem.options.column_names = parameter_names(campaign);
-    if (request.has_prior) hold(problem, prior_rows(campaign));
+    if (prior_count(campaign) > 0) hold(problem, prior_rows(campaign));
     if (options.held) hold_measured(problem, campaign, parameters, *options.held);
     if (request.is_focused_on_robot) problem.options.nuisance = nuisance_of_robot(campaign);
     if (request.least_distance > 0) {

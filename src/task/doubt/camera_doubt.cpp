@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/statistics.hpp"
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/jacobian/identification.hpp"
@@ -53,12 +54,16 @@ void find_board_factor(const Campaign& campaign, const CameraSensor& camera,
     if (setup.columns > 0) doubt.square = (setup.corners[1] - setup.corners[0]).norm();
 }
 
-/// The middle of the image or, if its size is not stated, of what is seen; and its extents, px.
-std::array<Vector2d, 2> image_of(const CameraSetup& setup, const Measurements& measured) {
-    if (setup.view.image) return {*setup.view.image / 2, *setup.view.image};
+/// The middle of a camera's image or, if its size is not stated, of what it sees; and its extents,
+/// px.
+std::array<Vector2d, 2> image_of(const CameraSensor& sensor, Index camera,
+                                 const Measurements& measured) {
+    const auto& image = sensor.camera(camera).image;
+    if (image) return {*image / 2, *image};
     Vector2d least = Vector2d::Constant(INFINITY), most = -least;
     for (Index i = 0; i < measured.is_seen.rows(); ++i) {
         for (const Index k : targets_seen(measured.is_seen.row(i))) {
+            if (k / sensor.corner_count() != camera) continue;
             const Vector2d place = 1e3 * measured.observations.row(i).segment<2>(2 * k).transpose();
             least = least.cwiseMin(place);
             most = most.cwiseMax(place);
@@ -69,25 +74,78 @@ std::array<Vector2d, 2> image_of(const CameraSetup& setup, const Measurements& m
 
 void check_principal_point(const CameraSensor& camera, const Measurements& measured,
                            const VectorXd& unknowns, CameraDoubt& doubt) {
-    const auto [middle, extents] = image_of(camera.setup(), measured);
-    const Intrinsics intrinsics = camera.intrinsics(unknowns);
-    const Vector2d off = Vector2d(intrinsics.cx, intrinsics.cy) - middle;
-    constexpr double far = 0.25;
-    if (!(off.cwiseQuotient(extents).cwiseAbs().maxCoeff() > far)) return;
-    doubt.principal_point = {intrinsics.cx, intrinsics.cy};
-    doubt.middle = {middle.x(), middle.y()};
-    doubt.is_of_image = camera.setup().view.image.has_value();
+    for (Index c = 0; c < camera.camera_count() && !doubt.principal_point; ++c) {
+        const auto [middle, extents] = image_of(camera, c, measured);
+        const Intrinsics intrinsics = camera.placed(c, unknowns).intrinsics;
+        const Vector2d off = Vector2d(intrinsics.cx, intrinsics.cy) - middle;
+        constexpr double far = 0.25;
+        if (!(off.cwiseQuotient(extents).cwiseAbs().maxCoeff() > far)) continue;
+        doubt.camera = c;
+        doubt.principal_point = {intrinsics.cx, intrinsics.cy};
+        doubt.middle = {middle.x(), middle.y()};
+        doubt.is_of_image = camera.camera(c).image.has_value();
+    }
 }
 
 bool is_seen_from_back(const Campaign& campaign, const CameraSensor& camera,
                        const Measurements& measured, const Parameters& registered) {
-    Index backs = 0;
+    const RowMatrixXd seen = times_seen(measured);
+    Index views = 0, backs = 0;
     for (Index i = 0; i < measured.configuration_count(); ++i) {
         const Isometry3d flange =
             world_from_flange(campaign, registered, measured.configurations.row(i).transpose());
-        backs += camera.is_seen_from_back(flange, registered.sensor) ? 1 : 0;
+        for (Index c = 0; c < camera.camera_count(); ++c) {
+            const Index count = camera.corner_count();
+            if (!(seen.row(i).segment(c * count, count).array() > 0).any()) continue;
+            ++views;
+            backs += camera.is_seen_from_back(c, flange, registered.sensor) ? 1 : 0;
+        }
     }
-    return 2 * backs > measured.configuration_count();
+    return 2 * backs > views;
+}
+
+/// What no pose of the board explains, per number left over, in standard deviations as stated: the
+/// median view's. However the robot errs, it does not depend on it.
+double scatter_about_poses(const Campaign& campaign, const Measurements& measured,
+                           const Parameters& registered) {
+    const Sensor& sensor = *campaign.sensor;
+    const VectorXd sigmas =
+        sensor.covariance(Isometry3d::Identity(), registered.sensor).diagonal().cwiseSqrt();
+    const TwistMatrix twists = TwistMatrix::Identity(6, 6);
+    std::vector<double> variances;
+    RowMatrixXd J(sensor.row_count(), twists.cols());
+    for (Index i = 0; i < measured.configuration_count(); ++i) {
+        const Isometry3d flange =
+            world_from_flange(campaign, registered, measured.configurations.row(i).transpose());
+        sensor.differentiate(flange, twists, registered.sensor, J);
+        J = sigmas.cwiseInverse().asDiagonal() * J;
+        const VectorXd predicted = sensor.predict(flange, registered.sensor);
+        const Index first = measured.first_sample[static_cast<std::size_t>(i)];
+        for (Index sample = first; sample < first + measured.sample_count(i); ++sample) {
+            const std::vector<Index> rows = seen_rows(measured.is_seen.row(sample), 2);
+            const Index left = std::ssize(rows) - twists.cols();
+            if (left < 2) continue;
+            const MatrixXd A = J(rows, Eigen::all);
+            const VectorXd r = (measured.observations.row(sample).transpose() - predicted)
+                                   .cwiseQuotient(sigmas)(rows);
+            const VectorXd unexplained = r - A * A.colPivHouseholderQr().solve(r);
+            variances.push_back(unexplained.squaredNorm() / static_cast<double>(left));
+        }
+    }
+    if (variances.empty()) return 0;
+    const Eigen::Map<const VectorXd> all(variances.data(), std::ssize(variances));
+    return std::sqrt(detail::quantile(all, 0.5, detail::QuantileRule::Upper));
+}
+
+void check_sigma(const Campaign& campaign, const CameraSensor& camera, const Measurements& measured,
+                 const Parameters& registered, CameraDoubt& doubt) {
+    constexpr double plainly = 1.5;
+    constexpr Index enough = 8;  // views
+    if (measured.configuration_count() < enough) return;
+    const double times = scatter_about_poses(campaign, measured, registered);
+    if (!(times > plainly || (times > 0 && times < 1 / plainly))) return;
+    doubt.sigma = camera.setup().sigma;
+    doubt.scatter = times * doubt.sigma;
 }
 
 }  // namespace
@@ -100,7 +158,11 @@ std::optional<CameraDoubt> find_camera_doubt(const Campaign& campaign, const Mea
     find_board_factor(campaign, *camera, measured, registered, doubt);
     check_principal_point(*camera, measured, registered.sensor, doubt);
     doubt.is_seen_from_back = is_seen_from_back(campaign, *camera, measured, registered);
-    if (doubt.board_factor == 1 && !doubt.principal_point && !doubt.is_seen_from_back) {
+    if (doubt.board_factor == 1 && !doubt.is_seen_from_back) {
+        check_sigma(campaign, *camera, measured, registered, doubt);
+    }
+    if (doubt.board_factor == 1 && !doubt.principal_point && !doubt.is_seen_from_back &&
+        doubt.scatter == 0) {
         return std::nullopt;
     }
     return doubt;

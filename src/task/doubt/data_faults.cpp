@@ -10,6 +10,7 @@
 #include "core/text.hpp"
 #include "held_out_doubt.hpp"
 #include "posewise/core/types.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "task/calibration/cures.hpp"
 #include "task/calibration/expected_distance.hpp"
 
@@ -106,12 +107,28 @@ std::vector<std::string> find_data_faults(const Doubted& doubted, const Calibrat
     return faults;
 }
 
+/// With the noise that corners show in each view by itself.
+void add_scatter(const Calibration& calibration, std::vector<OtherCampaign>& campaigns) {
+    const auto& doubt = calibration.doubts.camera;
+    const auto* const camera = dynamic_cast<const CameraSensor*>(calibration.campaign.sensor.get());
+    if (camera == nullptr || !doubt || doubt->scatter == 0) return;
+    const std::string sigma = format_short(doubt->scatter, 2);
+    CameraSetup setup = camera->setup();
+    const double times = std::stod(sigma) / setup.sigma;
+    setup.sigma *= times;
+    for (SingleCamera& other : setup.others) other.sigma *= times;
+    Campaign campaign = calibration.campaign;
+    campaign.sensor = std::make_shared<CameraSensor>(std::move(setup));
+    campaigns.push_back({"sensor.sigma_px: " + sigma, std::move(campaign)});
+}
+
 CureOptions cure_options(const CalibrationOptions& options, const Calibration& calibration) {
     CureOptions cures;
     cures.only_exclusions = !asks_for_models(calibration.doubts);
     if (cures.only_exclusions || options.earlier) return cures;  // its sizes and errors are those
     cures.can_learn_sizes = !calibration.stated_spread;
     if (options.richer) cures.campaigns = options.richer();
+    add_scatter(calibration, cures.campaigns);
     return cures;
 }
 

@@ -36,8 +36,8 @@ RowMatrixXd workspace_configurations(const Campaign& campaign, const Parameters&
     return workspace_configurations(placed, std::nullopt, count, seed);
 }
 
-std::optional<ExpectedError> expected_workspace_error(const Campaign& campaign,
-                                                      const Estimate& estimate) {
+std::optional<WorkspaceError> expected_workspace_error(const Campaign& campaign,
+                                                       const Estimate& estimate) {
     constexpr Index count = 200;
     if (campaign.sensor->has_contacts()) return std::nullopt;
     try {
@@ -46,7 +46,12 @@ std::optional<ExpectedError> expected_workspace_error(const Campaign& campaign,
             campaign.sensor->has_view()
                 ? viewed_poses(campaign, estimate.parameters, count, 1).configurations
                 : workspace_configurations(campaign, estimate.parameters, count, 1);
-        return predict_errors(campaign, estimate, configurations).front().overall;
+        WorkspaceError error{predict_errors(campaign, estimate, configurations).front().overall,
+                             {}};
+        if (campaign.sensor->has_pixels()) {
+            error.place = expected_place_error(campaign, estimate, configurations);
+        }
+        return error;
     } catch (const InputError&) {
         return std::nullopt;  // limits are missing, or the cell leaves no room
     }

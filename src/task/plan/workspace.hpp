@@ -19,9 +19,13 @@ RowMatrixXd workspace_configurations(const Campaign& campaign, const std::option
 RowMatrixXd workspace_configurations(const Campaign& campaign, const Parameters& found, Index count,
                                      std::uint64_t seed);
 
-/// What one reading there is expected to be off by; nothing where no configurations can be drawn,
-/// or readings are made at contacts only.
-std::optional<ExpectedError> expected_workspace_error(const Campaign& campaign,
-                                                      const Estimate& estimate);
+/// What one reading there is expected to be off by and, if that is in pixels, the board's place.
+struct WorkspaceError {
+    ExpectedError readings;
+    std::optional<ExpectedError> place;  ///< m
+};
+/// Nothing where no configurations can be drawn, or readings are made at contacts only.
+std::optional<WorkspaceError> expected_workspace_error(const Campaign& campaign,
+                                                       const Estimate& estimate);
 
 }  // namespace posewise::detail

@@ -44,7 +44,7 @@ SelectOptions study_selection(const StudyOptions& options, const Campaign& campa
         selection.proof = 0;  // nobody asks for the bound
         selection.gap = 1e-3;
     }
-    if (campaign.spread.is_prior) selection.held_rows = detail::prior_rows(campaign);
+    if (prior_count(campaign) > 0) selection.held_rows = detail::prior_rows(campaign);
     selection.least_distance = options.least_distance;
     selection.seed = options.seed.value();
     return selection;

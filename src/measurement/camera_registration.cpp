@@ -1,0 +1,176 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "board_pose.hpp"
+#include "camera_view.hpp"
+#include "core/statistics.hpp"
+#include "posewise/core/errors.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
+#include "posewise/measurement/measurements.hpp"
+#include "rigid_points.hpp"
+
+namespace posewise {
+namespace {
+
+/// What one camera sees of the board.
+detail::BoardView view_of(const CameraSensor& sensor, Index camera, const ConstNumbers& observation,
+                          const SeenTargets& is_seen) {
+    detail::BoardView view;
+    const Index corners = sensor.corner_count();
+    for (Index k = 0; k < corners; ++k) {
+        const Index target = camera * corners + k;
+        if (!is_seen[target]) continue;
+        view.corners.push_back(sensor.setup().corners[static_cast<std::size_t>(k)]);
+        view.pixels.emplace_back(observation.segment<2>(2 * target) / detail::kpx_per_px);
+    }
+    return view;
+}
+
+/// The pose that is turned least from all the others, at the median of their places.
+Isometry3d middle_of(const std::vector<Isometry3d>& poses) {
+    Isometry3d middle;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Isometry3d& pose : poses) {
+        double turned = 0;
+        for (const Isometry3d& other : poses) {
+            turned += Eigen::AngleAxisd(pose.linear().transpose() * other.linear()).angle();
+        }
+        if (!(turned < least)) continue;
+        least = turned;
+        middle = pose;
+    }
+    for (Index axis = 0; axis < 3; ++axis) {
+        VectorXd places(std::ssize(poses));
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            places[static_cast<Index>(i)] = poses[i].translation()[axis];
+        }
+        middle.translation()[axis] = detail::quantile(places, 0.5, detail::QuantileRule::Linear);
+    }
+    return middle;
+}
+
+/// The board in each camera's frame, in each view of a part of them that is enough; nothing where
+/// it does not show it.
+std::vector<std::vector<std::optional<Isometry3d>>> boards_of(
+    const CameraSensor& sensor, const std::vector<PlacedCamera>& cameras,
+    const Measurements& means) {
+    constexpr Index enough = 200;
+    std::vector<std::vector<std::optional<Isometry3d>>> boards;
+    Index found = 0;
+    for (Index i = 0; i < means.configuration_count() && found < enough; ++i) {
+        std::vector<std::optional<Isometry3d>> seen;
+        Index count = 0;
+        for (Index c = 0; c < sensor.camera_count(); ++c) {
+            const auto view =
+                view_of(sensor, c, means.observations.row(i).transpose(), means.is_seen.row(i));
+            seen.push_back(
+                detail::find_board(view, cameras[static_cast<std::size_t>(c)].intrinsics));
+            count += seen.back() ? 1 : 0;
+        }
+        if (count < 2) continue;
+        boards.push_back(std::move(seen));
+        ++found;
+    }
+    return boards;
+}
+
+/// Where further cameras are in the first one's frame, by views of the board that they share.
+void place_cameras(const CameraSensor& sensor, const Measurements& means,
+                   std::vector<PlacedCamera>& cameras) {
+    if (cameras.size() == 1) return;
+    const auto boards = boards_of(sensor, cameras, means);
+    std::vector<bool> is_placed(cameras.size(), false);
+    is_placed[0] = true;
+    for (bool has_changed = true; has_changed;) {
+        has_changed = false;
+        for (std::size_t c = 1; c < cameras.size(); ++c) {
+            if (is_placed[c]) continue;
+            std::vector<Isometry3d> poses;
+            for (const auto& seen : boards) {
+                for (std::size_t other = 0; other < cameras.size() && seen[c]; ++other) {
+                    if (!is_placed[other] || !seen[other]) continue;
+                    poses.push_back(cameras[other].in_first * *seen[other] * seen[c]->inverse());
+                }
+            }
+            if (poses.empty()) continue;
+            cameras[c].in_first = middle_of(poses);
+            is_placed[c] = has_changed = true;
+        }
+    }
+    const auto lost = std::ranges::find(is_placed, false);
+    if (lost == is_placed.end()) return;
+    throw InputError(fmt::format(
+        "camera {} shows enough corners of the board in no view that shows enough to one of the "
+        "others; it must see the board together with them in some views",
+        lost - is_placed.begin() + 1));
+}
+
+}  // namespace
+
+ObservedPoints CameraSensor::points_with(const std::vector<PlacedCamera>& cameras) const {
+    const auto positions = [this, cameras](const VectorXd& observation,
+                                           const SeenTargets& is_seen) {
+        // By the camera that sees most of it.
+        std::vector<std::pair<std::size_t, detail::BoardView>> views;
+        for (std::size_t c = 0; c < cameras.size(); ++c) {
+            views.emplace_back(c, view_of(*this, static_cast<Index>(c), observation, is_seen));
+        }
+        std::ranges::stable_sort(views, std::ranges::greater{},
+                                 [](const auto& one) { return one.second.corners.size(); });
+        for (const auto& [c, view] : views) {
+            const auto board = detail::find_board(view, cameras[c].intrinsics);
+            if (!board) continue;
+            const Isometry3d in_first = cameras[c].in_first * *board;
+            const Isometry3d place = setup_.is_on_flange ? in_first.inverse() : in_first;
+            return VectorXd(detail::points_of(place).reshaped());
+        }
+        return VectorXd();
+    };
+    const auto of_points = [this, cameras](const VectorXd& coordinates) {
+        return unknowns(has_unknown_place() ? detail::frame_of(coordinates) : *setup_.known_place,
+                        cameras[0].intrinsics, {cameras.begin() + 1, cameras.end()});
+    };
+    const auto in_flange = [this](const VectorXd& unknowns) {
+        return VectorXd(detail::points_of(place(unknowns)).reshaped());
+    };
+    return {detail::rigid_targets(setup_.known_place), positions, of_points, in_flange};
+}
+
+std::optional<ObservedPoints> CameraSensor::observed_points() const {
+    return points_with({{Isometry3d::Identity(), setup_.intrinsics}});
+}
+
+std::optional<ObservedPoints> CameraSensor::observed_points(const Measurements& means) const {
+    std::vector<PlacedCamera> cameras;
+    for (Index c = 0; c < camera_count(); ++c) {
+        const SingleCamera& one = camera(c);
+        cameras.push_back({Isometry3d::Identity(), one.intrinsics});
+        if (unknown_intrinsics(c).empty()) continue;
+        std::vector<detail::BoardView> views;
+        for (Index i = 0; i < means.configuration_count(); ++i) {
+            auto view =
+                view_of(*this, c, means.observations.row(i).transpose(), means.is_seen.row(i));
+            if (view.corners.size() >= 4 && !detail::are_in_line(view.corners)) {
+                views.push_back(std::move(view));
+            }
+        }
+        const auto found = detail::find_intrinsics(views, one.intrinsics, one.is_known, one.image);
+        const bool is_stated = one.intrinsics.fx > 0 && one.intrinsics.fy > 0;
+        if (!found && !is_stated) {
+            throw InputError(fmt::format(
+                "the intrinsic parameters of {} do not follow from these views; more views of a "
+                "plane board that leans to different sides are needed, or intrinsics that are "
+                "stated, if only roughly (key {})",
+                c == 0 ? "the camera" : fmt::format("camera {}", c + 1),
+                c == 0 ? "sensor.intrinsics" : "sensor.other_cameras"));
+        }
+        if (found) cameras.back().intrinsics = *found;
+    }
+    place_cameras(*this, means, cameras);
+    return points_with(cameras);
+}
+
+}  // namespace posewise
