@@ -64,6 +64,7 @@ Asked asked_with(const Campaign& campaign, Index poses) {
     by.simulating = asked_by([&] {
         measured = simulate_measurements(campaign, campaign.nominal, configurations, 1, 4);
     });
+    measured.is_seen.setConstant(true);  // views that show other targets take memory of their own
     const IdentificationProblem problem = make_problem(campaign, measured);
     by.linearising = asked_by([&] { linearise(problem, campaign.nominal); });
     by.comparing = asked_by([&] { total_loss(problem, campaign.nominal); });
@@ -81,9 +82,6 @@ TEST(EverySensor, TakesNoMemoryForEachConfiguration) {
         if (const auto* camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get())) {
             CameraSetup setup = camera->setup();  // Eigen has memory of its own for larger products
             setup.corners = chessboard(2, 2, 0.1);
-            setup.image.reset();  // nor do views differ in what they show
-            for (SingleCamera& other : setup.others) other.image.reset();
-            setup.view.most_tilt = 4;
             campaign.sensor = std::make_shared<CameraSensor>(setup);
         }
         const Asked few = asked_with(campaign, 12);
