@@ -46,20 +46,6 @@ std::vector<Index> make_priority(const Campaign& campaign) {
     return priority;
 }
 
-/// Numbers of the robot that are rounded blur its geometry, not the shapes of terms or of a lens.
-VectorXd least_shares_of(const Campaign& campaign) {
-    constexpr double least_of_exact = 1e-12;
-    VectorXd shares = VectorXd::Constant(parameter_count(campaign), detail::least_visible);
-    for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
-        if (campaign.robot.parameter_term(k) == nullptr) continue;
-        shares[base_parameter_count(campaign) + k] = least_of_exact;
-    }
-    if (campaign.sensor->has_pixels()) {
-        shares.tail(campaign.nominal.sensor.size()).setConstant(least_of_exact);
-    }
-    return shares;
-}
-
 /// How the dropped columns follow from the kept ones: kept x dropped, in the columns' own units.
 MatrixXd express_dropped(const MatrixXd& J, const Identifiability& result) {
     MatrixXd kept(J.rows(), static_cast<Index>(result.kept.size()));
@@ -156,7 +142,7 @@ Identifiability find_independent_columns(const MatrixXd& J, const std::vector<In
 Identifiability find_identifiable(const Campaign& campaign, const StopSignal& stop) {
     Identifiability found =
         find_independent_columns(detail::factor_at_nominal(campaign, stop), make_priority(campaign),
-                                 least_residual, stop, least_shares_of(campaign));
+                                 least_residual, stop, detail::least_shares_of(campaign));
     const VectorXd sizes = detail::sizes_of(campaign);
     for (DroppedParameter& dropped : found.dropped) {
         for (ParameterTerm& term : dropped.absorbed_by) {
@@ -284,8 +270,8 @@ Index least_pose_count(const Campaign& stated, const StopSignal& stop) {
     const auto suffices = [&](Index count) {
         if (count >= poses.configurations.rows()) return true;
         const MatrixXd J = detail::stack_at_nominal(campaign, poses, 0, count) * sizes.asDiagonal();
-        const auto some =
-            find_independent_columns(J, all.kept, least_residual, stop, least_shares_of(campaign));
+        const auto some = find_independent_columns(J, all.kept, least_residual, stop,
+                                                   detail::least_shares_of(campaign));
         return static_cast<Index>(some.kept.size()) == rank;
     };
     const Index told = campaign.sensor->unknown_sizes().size();

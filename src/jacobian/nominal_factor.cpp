@@ -19,6 +19,19 @@ Parameters nominal_of(const Campaign& campaign) {
 
 }  // namespace
 
+VectorXd least_shares_of(const Campaign& campaign) {
+    constexpr double least_of_exact = 1e-12;
+    VectorXd shares = VectorXd::Constant(parameter_count(campaign), least_visible);
+    for (Index k = 0; k < campaign.robot.parameter_count(); ++k) {
+        if (campaign.robot.parameter_term(k) == nullptr) continue;
+        shares[base_parameter_count(campaign) + k] = least_of_exact;
+    }
+    if (campaign.sensor->has_pixels()) {
+        shares.tail(campaign.nominal.sensor.size()).setConstant(least_of_exact);
+    }
+    return shares;
+}
+
 ShownPoses poses_to_judge(const Campaign& campaign, Index count) {
     const Parameters nominal = nominal_of(campaign);
     if (campaign.sensor->has_view()) {

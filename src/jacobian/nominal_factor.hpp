@@ -14,6 +14,9 @@ inline constexpr std::uint64_t configuration_seed =
 /// best tracker (5 um) does not see in 300 readings. What is left of a column there is the rounding
 /// of a file's numbers: a target on the last joint's axis but for an angle of 3.1416.
 inline constexpr double least_visible = 1e-4;
+/// What must be left of each column, as such a share. Numbers of the robot that are rounded blur
+/// its geometry, not the shapes of terms or of a lens.
+VectorXd least_shares_of(const Campaign& campaign);
 
 /// So many random poses, of a camera those that show it the board. Of a probe that touches each
 /// touches one thing, where they can reach all.

@@ -41,7 +41,10 @@ std::vector<Word> find_words(const std::vector<std::string>& names, const std::s
 
 class Search {
   public:
-    Search(MatrixXd J, const StopSignal& stop) : J_(std::move(J)), stop_(stop) {}
+    Search(const Campaign& campaign, const StopSignal& stop)
+        : J_(detail::factor_at_nominal(campaign, stop)),
+          least_shares_(detail::least_shares_of(campaign)),
+          stop_(stop) {}
 
     std::vector<Index> dropped_without(const std::vector<Index>& known) const {
         const std::vector<Index> open = open_beside(known);
@@ -49,9 +52,8 @@ class Search {
         std::iota(all.begin(), all.end(), Index{0});
         std::vector<Index> dropped;
         if (open.empty()) return dropped;
-        const auto found =
-            find_independent_columns(J_(Eigen::all, open), all, least_residual, stop_,
-                                     VectorXd::Constant(std::ssize(open), detail::least_visible));
+        const auto found = find_independent_columns(J_(Eigen::all, open), all, least_residual,
+                                                    stop_, least_shares_(open));
         for (const DroppedParameter& one : found.dropped) {
             dropped.push_back(open[static_cast<std::size_t>(one.parameter)]);
         }
@@ -106,6 +108,7 @@ class Search {
     }
 
     MatrixXd J_;
+    VectorXd least_shares_;
     const StopSignal& stop_;
 };
 
@@ -142,7 +145,7 @@ Unknowable find_unknowable(const Campaign& campaign, const StopSignal& stop) {
         return found;
     }
     bare.prior.reset();
-    const Search search(detail::factor_at_nominal(bare, stop), stop);
+    const Search search(bare, stop);
     const std::vector<std::string> names = parameter_names(bare);
     for (const Index k : search.dropped_without({})) {
         found.parameters.push_back(names[static_cast<std::size_t>(k)]);
