@@ -44,7 +44,7 @@ exit code 3; --force writes it, marked. Where something is doubtful, robust loss
 richer errors are tried, and those that help are named with the error held out.
 With a prior the calibration learns how large the errors of each class are. It starts from the
 expected sizes; few poses move them a little, many freely. It prints both; --sizes stated keeps the
-expected ones.
+expected ones, as is usual where corners in pixels are measured.
 With --exclude it leaves out configurations by their ids and samples (7:2), and the estimate records it.
 -m takes an instrument's list of points, too (name x y z, as SpatialAnalyzer or PolyWorks write it): with
 --plan they get the joint values of the plan's poses by their names (P001_T1: target 1 at pose p1), in

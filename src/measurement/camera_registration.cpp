@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "board_pose.hpp"
+#include "board_starts.hpp"
 #include "camera_view.hpp"
 #include "core/statistics.hpp"
 #include "posewise/core/errors.hpp"
@@ -103,8 +104,8 @@ void place_cameras(const CameraSensor& sensor, const Measurements& means,
     const auto lost = std::ranges::find(is_placed, false);
     if (lost == is_placed.end()) return;
     throw InputError(fmt::format(
-        "camera {} shows enough corners of the board in no view that shows enough to one of the "
-        "others; it must see the board together with them in some views",
+        "no view shows enough of the board (4 corners or more that are not in one line) both to "
+        "camera {} and to the first one or one that is linked with it so; some must",
         lost - is_placed.begin() + 1));
 }
 

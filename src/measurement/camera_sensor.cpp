@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "board_pose.hpp"
+#include "board_starts.hpp"
 #include "camera_view.hpp"
 #include "core/format.hpp"
 #include "noise_words.hpp"

@@ -59,6 +59,12 @@ std::string missing_places(const Campaign& campaign) {
         return "where the ball and all sockets are (position_mm of 'sensor.targets' and of each of "
                "'sensor.sockets')";
     }
+    if (sensor.has_pixels()) {
+        const std::string places =
+            "where board and cameras are, and their intrinsics, if only roughly (keys "
+            "'sensor.place', 'place' of each of 'sensor.other_cameras', 'intrinsics'";
+        return places + (campaign.has_nominal_base ? ")" : ", and 'base')");
+    }
     const bool is_pose = sensor.has_orientation();
     const std::string key = is_pose ? "sensor.tool" : "sensor.targets.position_mm";
     if (campaign.has_nominal_base) {

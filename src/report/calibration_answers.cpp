@@ -105,7 +105,7 @@ std::string sum_up(const Calibration& calibration, const Judged& judged, const A
     text += fmt::format(" {}", judged.where);
     if (calibration.campaign.robot.parameter_count() == 0) {
         text += "; the robot is taken as it is";
-    } else {
+    } else if (&judged.units == &units) {
         text += fmt::format("; before {}{}", format_error(nominal, units),
                             judged.group ? " at the poses calibrated with" : "");
         if (!judged.group && found >= nominal) text += ", which is no worse";
@@ -144,10 +144,14 @@ std::string compare_expected(const Calibration& calibration, const Judged& judge
                                                                 : "beyond chance");
     }
     constexpr double most_taken_up = 0.1;
-    const auto numbers = static_cast<double>(calibration.measured.configurations *
-                                             calibration.campaign.sensor->row_count());
-    const auto left = static_cast<double>(calibration.estimate.degrees_of_freedom);
-    if (!calibration.held_out_interval || left < (1 - most_taken_up) * numbers) return "";
+    const Sensor& sensor = *calibration.campaign.sensor;
+    const auto numbers =
+        static_cast<double>(calibration.measured.configurations * sensor.row_count());
+    const double taken_up = numbers - static_cast<double>(calibration.estimate.degrees_of_freedom);
+    // However many corners a view shows, it tells six numbers of the robot.
+    const auto telling = static_cast<double>(calibration.measured.configurations * 6);
+    const double least = sensor.has_pixels() ? std::min(numbers, telling) : numbers;
+    if (!calibration.held_out_interval || taken_up > most_taken_up * least) return "";
     const double expected = calibration.expected.total();
     const double found = calibration.held_out->means.rms();
     const auto& [lower, upper, freedom] = *calibration.held_out_interval;

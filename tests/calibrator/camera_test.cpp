@@ -159,7 +159,8 @@ TEST(Camera, MustShareViewsWithTheOthers) {
         register_base_and_targets(blind(exact), measured);
         FAIL();
     } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("camera 2 shows"), std::string::npos)
+        EXPECT_NE(std::string(error.what()).find("camera 2 and to the first one"),
+                  std::string::npos)
             << error.what();
     }
 }

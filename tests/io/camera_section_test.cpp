@@ -58,6 +58,11 @@ TEST(ReadCamera, TakesWhatIsStated) {
     EXPECT_EQ(campaign.sensor->unknown_names()[6], "camera.fx");
 }
 
+TEST(ReadCamera, LearnsSizesOnlyIfTold) {
+    EXPECT_FALSE(read(camera).spread.is_open);
+    EXPECT_TRUE(read(camera + "sizes: learned\n").spread.is_open);
+}
+
 TEST(ReadCamera, FindsWhatItIsNotTold) {
     const Campaign campaign = read(
         "sensor: {kind: camera, camera: fixed, sigma_px: 0.3, intrinsics: {known: false},\n"
@@ -117,6 +122,25 @@ CampaignFile read_with_file(const std::string& text, const std::string& change =
         "c.yaml", two_joint_arm + "sensor: {kind: camera, camera: fixed, sigma_px: 0.3, " + change +
                       "intrinsics: {file: camera.yaml},\n"
                       "  board: {columns: 3, rows: 2, square_mm: 25}}\n"));
+}
+
+TEST(ReadCamera, TakesEachCameraFromAFileOfSeveral) {
+    const std::string others = "other_cameras: [{intrinsics: {file: camera.yaml}}], ";
+    const std::string second =
+        "camera2_image_width: 640\ncamera2_image_height: 480\n"
+        "camera2_matrix: {data: [600, 0, 320, 0, 601, 240, 0, 0, 1]}\n"
+        "camera2_distortion_model: fisheye\n"
+        "camera2_distortion_coefficients: {data: [0.1, 0.02, 0, 0]}\n";
+    const CampaignFile of_opencv = read_with_file(opencv + second, others);
+    EXPECT_EQ(setup_of(of_opencv).intrinsics.fy, 1205);
+    EXPECT_EQ(setup_of(of_opencv).others[0].intrinsics.fy, 601);
+    EXPECT_EQ(setup_of(of_opencv).others[0].intrinsics.distortion, Distortion::Fisheye);
+    EXPECT_EQ(*setup_of(of_opencv).others[0].image, Vector2d(640, 480));
+    const std::string of_kalibr =
+        kalibr + "cam1: {camera_model: pinhole, intrinsics: [600, 601, 320, 240]}\n";
+    EXPECT_EQ(setup_of(read_with_file(of_kalibr, others)).others[0].intrinsics.fy, 601);
+    // A file of one camera may be of any.
+    EXPECT_EQ(setup_of(read_with_file(opencv, others)).others[0].intrinsics.fy, 1205);
 }
 
 TEST(ReadCamera, TakesFilesOfOpenCvAndKalibr) {

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/measurements.hpp"
+#include "posewise/task/calibration.hpp"
 #include "posewise/task/doubts.hpp"
 #include "posewise/task/study.hpp"
 #include "support/robots.hpp"
@@ -91,6 +94,48 @@ TEST(CameraDoubt, NamesTheScatterOfCorners) {
         EXPECT_NEAR(doubt->scatter, setup_of(campaign).sigma, 0.15 * setup_of(campaign).sigma);
         EXPECT_EQ(doubt->sigma, other.sigma);
     }
+}
+
+TEST(SizeDoubts, NameAMarkerThatIsFarFromItsPlace) {
+    Campaign campaign = before_camera(tracked_campaign(fanuc()), camera_before_cube());
+    const Measurements measured =
+        simulate(campaign, {.pose_count = 20, .repeats = 1, .truth_seed = 2, .seed = 7})
+            .measurements;
+    CameraSetup wrong = setup_of(campaign);
+    wrong.corners[2].x() += 0.02;
+    const Campaign stated = with_setup(campaign, wrong);
+    CalibrationOptions options;
+    options.folds = 0;
+    const auto sizes_of = [&](const Campaign& one) {
+        return calibrate(one, measured, options).doubts.sizes;
+    };
+    const auto is_marker = [](const SizeDoubt& doubt) {
+        return doubt.parameter.starts_with("board.p");
+    };
+    EXPECT_TRUE(std::ranges::none_of(sizes_of(campaign), is_marker));
+    const auto sizes = sizes_of(stated);
+    const auto found = std::ranges::find(sizes, "board.p3.x", &SizeDoubt::parameter);
+    ASSERT_NE(found, sizes.end());
+    EXPECT_GT(found->times, 5);
+    EXPECT_FALSE(found->is_angle);
+}
+
+TEST(EarlierEstimate, KeepsMarkersWhereTheBoardWasMovedSince) {
+    Campaign campaign = before_camera(tracked_campaign(fanuc()), camera_before_cube());
+    const Measurements measured =
+        simulate(campaign, {.pose_count = 20, .repeats = 1, .truth_seed = 2, .seed = 7})
+            .measurements;
+    CalibrationOptions options;
+    options.folds = 0;
+    Earlier earlier{calibrate(campaign, measured, options).estimate,
+                    {.is_prior = true, .has_new_targets = true}};
+    const Campaign expected = with_earlier(campaign, earlier);
+    EXPECT_EQ(expected.prior->covariance.rows(), prior_count(expected));
+    EXPECT_NO_THROW(prior_information(expected));
+    EXPECT_NEAR(expected.prior->covariance.diagonal().tail<1>()[0], 1e-6, 1e-18);
+    options.earlier = earlier;
+    const Calibration again = calibrate(campaign, measured, options);
+    EXPECT_TRUE(again.is_identified()) << again.estimate.undetermined;
 }
 
 TEST(CameraDoubt, NamesAPrincipalPointOfAnotherImage) {

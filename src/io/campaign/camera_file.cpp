@@ -56,9 +56,10 @@ void set_coefficients(const YamlValue& value, std::vector<double> numbers, bool 
     intrinsics.coefficients = std::move(numbers);
 }
 
-CameraFile read_opencv(const YamlValue& file) {
+/// `own`: what stands before the words of this camera, "camera2_"; nothing of the first.
+CameraFile read_opencv(const YamlValue& file, const std::string& own) {
     CameraFile camera;
-    const YamlValue matrix = require(file, "camera_matrix");
+    const YamlValue matrix = require(file, own.empty() ? "camera_matrix" : own + "matrix");
     const std::vector<double> K = numbers_of(matrix);
     if (K.size() != 9) throw matrix.error("must have 9 numbers, row by row");
     constexpr double none = 1e-9;
@@ -69,17 +70,17 @@ CameraFile read_opencv(const YamlValue& file) {
     std::optional<YamlValue> coefficients;
     for (const char* const key :
          {"distortion_coefficients", "distortion_coeffs", "dist_coeffs", "dist_coeff"}) {
-        if (!coefficients) coefficients = find(file, key);
+        if (!coefficients) coefficients = find(file, own + key);
     }
     if (!coefficients) {
         throw file.error(
             "has a camera_matrix and no distortion_coefficients, as if it were cut off; must have "
             "them, 0 for a lens without distortion");
     }
-    const auto model = find(file, "distortion_model");
+    const auto model = find(file, own + "distortion_model");
     const bool is_fisheye = model && (model->is_text("fisheye") || model->is_text("equidistant"));
     set_coefficients(*coefficients, numbers_of(*coefficients), is_fisheye, camera.intrinsics);
-    const auto width = find(file, "image_width"), height = find(file, "image_height");
+    const auto width = find(file, own + "image_width"), height = find(file, own + "image_height");
     if (width && height) camera.image = Vector2d(width->number(), height->number());
     return camera;
 }
@@ -122,7 +123,7 @@ std::string without_opencv_words(std::string content) {
 
 }  // namespace
 
-CameraFile read_camera_file(const std::string& path, const YamlValue& asked_by) {
+CameraFile read_camera_file(const std::string& path, const YamlValue& asked_by, Index camera) {
     std::string content;
     try {
         content = read_file(path);
@@ -130,14 +131,20 @@ CameraFile read_camera_file(const std::string& path, const YamlValue& asked_by) 
         throw asked_by.error(fmt::format("cannot be read: {}", e.what()));
     }
     const YamlValue file = parse_yaml(without_opencv_words(std::move(content)), path);
-    const auto kalibr = find(file, "cam0");
-    CameraFile camera = kalibr ? read_kalibr(*kalibr) : read_opencv(file);
+    // A file may hold one camera or several.
+    const auto kalibr = find(file, fmt::format("cam{}", camera));
+    const auto only = find(file, "cam0");
+    const std::string own = camera == 0 ? "" : fmt::format("camera{}_", camera + 1);
+    const bool has_own = find(file, own + "matrix").has_value();
+    CameraFile found = kalibr ? read_kalibr(*kalibr)
+                       : only ? read_kalibr(*only)
+                              : read_opencv(file, has_own ? own : "");
     try {
-        check_intrinsics(camera.intrinsics);
+        check_intrinsics(found.intrinsics);
     } catch (const InputError& e) {
         throw file.error(e.what());
     }
-    return camera;
+    return found;
 }
 
 }  // namespace posewise::detail

@@ -16,7 +16,8 @@ struct CameraFile {
 
 /// A YAML file of OpenCV's FileStorage or of ROS (camera_matrix, distortion_coefficients or
 /// distortion_coeffs, image_width), or of Kalibr (cam0: intrinsics, distortion_coeffs). Throws
-/// InputError with its place; `asked_by` names it where it cannot be read.
-CameraFile read_camera_file(const std::string& path, const YamlValue& asked_by);
+/// InputError with its place; `asked_by` names it where it cannot be read. Of a file that holds
+/// several (camera2_matrix, as write_camera() has them, or cam1) the one numbered `camera`, from 0.
+CameraFile read_camera_file(const std::string& path, const YamlValue& asked_by, Index camera);
 
 }  // namespace posewise::detail

@@ -75,7 +75,7 @@ CameraFile read_numbers(const YamlMap& map) {
     return camera;
 }
 
-CameraFile read_stated(const YamlValue& value, const YamlMap& map) {
+CameraFile read_stated(const YamlValue& value, const YamlMap& map, Index camera) {
     const auto file = map.find("file");
     if (!file) return read_numbers(map);
     for (const YamlEntry& entry : value.entries()) {
@@ -83,12 +83,13 @@ CameraFile read_stated(const YamlValue& value, const YamlMap& map) {
         throw entry.value.error("is stated beside 'file'; must be left out, the file has it");
     }
     const std::filesystem::path campaign(value.location().path);
-    return read_camera_file((campaign.parent_path() / file->text()).string(), *file);
+    return read_camera_file((campaign.parent_path() / file->text()).string(), *file, camera);
 }
 
-void read_intrinsics(const YamlValue& value, SingleCamera& setup) {
+/// `number`: of the camera, from 0.
+void read_intrinsics(const YamlValue& value, Index number, SingleCamera& setup) {
     const YamlMap map(value, keys::camera, "intrinsics");
-    const CameraFile camera = read_stated(value, map);
+    const CameraFile camera = read_stated(value, map, number);
     setup.intrinsics = camera.intrinsics;
     const auto names = setup.intrinsics.names();
     const auto known = map.find("known");
@@ -217,7 +218,8 @@ std::vector<PlacedCamera> read_others(const YamlValue& list, CameraSetup& setup,
         const auto sigma = map.find_measure("sigma");
         camera.sigma = sigma ? px_per_kpx * read_positive(*sigma) : setup.sigma;
         read_image(map, camera);
-        read_intrinsics(map.require("intrinsics"), camera);
+        const Index number = 1 + static_cast<Index>(setup.others.size());
+        read_intrinsics(map.require("intrinsics"), number, camera);
         placed.push_back({Isometry3d::Identity(), camera.intrinsics});
         if (const auto place = map.find("place")) {
             placed.back().in_first = read_frame(YamlMap(*place, keys::places, "place"));
@@ -242,7 +244,7 @@ SensorSection read_camera(const YamlValue& value) {
     }
     setup.sigma = px_per_kpx * read_positive(sensor.require_measure("sigma"));
     read_image(sensor, setup);
-    read_intrinsics(sensor.require("intrinsics"), setup);
+    read_intrinsics(sensor.require("intrinsics"), 0, setup);
     const YamlValue board = sensor.require("board");
     read_board(board, setup);
     if (const auto view = sensor.find("view")) read_view(*view, setup);

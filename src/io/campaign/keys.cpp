@@ -34,7 +34,7 @@ const YamlKeys file{
          "`learned`: a calibration learns the sizes of the robot's errors, starting from those of "
          "the prior. One standard deviation is a factor of 2, so that few poses move them a "
          "little. `stated`: it takes them as they are",
-         "`learned`", "`stated`"},
+         "`learned`; of `kind: camera` `stated`", "`stated`"},
         {"planning", "",
          "with `{errors: full}`: `select` and `plan` reckon with these errors (what they predict "
          "is that of a calibration with these), all other commands with those of `robot`, which "

@@ -40,18 +40,22 @@ std::string intrinsics_text(const Intrinsics& camera, const std::string& prefix)
                Eigen::Map<const RowMatrixXd>(coefficients.data(), 1, std::ssize(coefficients)));
 }
 
+std::string image_text(const std::optional<Vector2d>& image, const std::string& own) {
+    if (!image) return "";
+    return fmt::format("{0}image_width: {1:g}\n{0}image_height: {2:g}\n", own, image->x(),
+                       image->y());
+}
+
 /// "camera2" of the first further one.
 std::string name_of_other(std::size_t k) { return fmt::format("camera{}", k + 2); }
 
 std::string opencv_text(const CameraPlaces& places, const std::string& title) {
     std::string text = fmt::format("%YAML:1.0\n---\n# {}; frames in m\n", escape_controls(title));
-    if (places.image) {
-        text += fmt::format("image_width: {:g}\nimage_height: {:g}\n", places.image->x(),
-                            places.image->y());
-    }
+    text += image_text(places.image, "");
     if (places.intrinsics) text += intrinsics_text(*places.intrinsics, "camera");
     for (std::size_t k = 0; k < places.others.size(); ++k) {
         const std::string name = name_of_other(k);
+        text += image_text(places.others[k].image, name + '_');
         text += intrinsics_text(places.others[k].intrinsics, name);
         text += opencv_matrix("camera_from_" + name, places.others[k].in_first.matrix());
     }
@@ -113,7 +117,7 @@ std::optional<CameraPlaces> camera_places(const Campaign& campaign, const Parame
     places->intrinsics = camera->intrinsics(found.sensor);
     places->image = camera->setup().image;
     for (Index c = 1; c < camera->camera_count(); ++c) {
-        places->others.push_back(camera->placed(c, found.sensor));
+        places->others.push_back({camera->placed(c, found.sensor), camera->camera(c).image});
     }
     return places;
 }

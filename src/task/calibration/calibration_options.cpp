@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/measurements.hpp"
 
 namespace posewise {
 
@@ -33,7 +34,12 @@ std::string judge_measured(const Campaign& campaign, const Measurements& measure
     CalibrationOptions options;
     options.folds = 0;
     options.stop = stop;
-    const Calibration calibration = calibrate(campaign, measurements, options);
+    constexpr Index enough = 200;  // views, of many numbers each
+    const Index count = measurements.configuration_count();
+    const bool is_part = campaign.sensor->has_pixels() && count > enough;
+    const Measurements part =
+        is_part ? take(measurements, evenly_spaced(count, enough)) : Measurements{};
+    const Calibration calibration = calibrate(campaign, is_part ? part : measurements, options);
     if (calibration.is_identified() && judge && !stop.is_set()) judge(calibration);
     return calibration.estimate.undetermined;
 }

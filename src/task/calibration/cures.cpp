@@ -139,7 +139,7 @@ std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,
     }
     if (options.only_exclusions) return trials;
     if (options.can_learn_sizes && has_squares && campaign.spread.is_prior &&
-        !is_far_above_prior(doubted)) {
+        !campaign.sensor->has_pixels() && !is_far_above_prior(doubted)) {
         CureTrial& trial = add({"sizes learned"}, campaign);
         trial.learns_sizes = true;
         trial.campaign.spread.is_open = true;

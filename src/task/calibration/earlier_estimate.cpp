@@ -63,12 +63,18 @@ Prior make_prior(const Campaign& campaign, const Campaign& reduced, const Earlie
     Prior prior{reduced.nominal, !earlier.use.has_new_base, !earlier.use.has_new_targets, {}};
     std::vector<Index> told = numbers_of(mark_known(campaign, known), false);
     if (earlier.use.has_new_targets) {
-        const Index kept = reduced.sensor->unknown_sizes().size();
-        told.resize(told.size() - static_cast<std::size_t>(reduced.nominal.sensor.size() - kept));
+        told.resize(told.size() - static_cast<std::size_t>(reduced.nominal.sensor.size()));
     }
     if (earlier.use.has_new_base)
         told.erase(told.begin(), told.begin() + base_parameter_count(reduced));
-    prior.covariance = drifted(campaign, earlier)(told, told);
+    const auto count = static_cast<Index>(told.size());
+    const MatrixXd of_estimate = drifted(campaign, earlier)(told, told);
+    // Whatever is on the flange now is known as it is stated.
+    const VectorXd sizes =
+        earlier.use.has_new_targets ? reduced.sensor->unknown_sizes() : VectorXd();
+    prior.covariance = MatrixXd::Zero(count + sizes.size(), count + sizes.size());
+    prior.covariance.topLeftCorner(count, count) = of_estimate;
+    prior.covariance.diagonal().tail(sizes.size()) = sizes.cwiseAbs2();
     return prior;
 }
 

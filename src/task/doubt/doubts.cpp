@@ -81,6 +81,15 @@ std::vector<SizeDoubt> find_size_doubts(const Campaign& campaign, const Estimate
                           errors[k], campaign.robot.parameter_element(k).motion == Motion::Rotation,
                           campaign.robot.parameter_term(k) != nullptr});
     }
+    const VectorXd of_sensor = campaign.sensor->unknown_sizes();
+    const Index sensor_begin = robot_begin + errors.size();
+    for (Index k = 0; k < of_sensor.size(); ++k) {
+        const double error = estimate.parameters.sensor[k];
+        const double ratio = std::abs(error) / of_sensor[k];
+        if (ratio <= doubtful_under_prior) continue;
+        doubts.push_back(
+            {estimate.names[static_cast<std::size_t>(sensor_begin + k)], ratio, error, false});
+    }
     return doubts;
 }
 
