@@ -110,7 +110,8 @@ Isometry3d CameraSensor::place(const VectorXd& unknowns) const {
 }
 
 PlacedCamera CameraSensor::placed(Index camera, const VectorXd& unknowns) const {
-    PlacedCamera placed{Isometry3d::Identity(), this->camera(camera).intrinsics};
+    const SingleCamera& one = this->camera(camera);
+    PlacedCamera placed{Isometry3d::Identity(), one.intrinsics, one.image};
     Index next = first_unknown(camera);
     if (camera > 0) {
         placed.in_first = detail::frame_from(unknowns.segment<6>(next));

@@ -8,11 +8,6 @@
 
 namespace posewise::io {
 
-/// A further camera, in the first one's frame.
-struct FurtherCamera : PlacedCamera {
-    std::optional<Vector2d> image;  ///< width and height, px
-};
-
 /// Where an estimate has camera and board.
 struct CameraPlaces {
     bool is_on_flange = false;  ///< the camera; else the board
@@ -23,7 +18,7 @@ struct CameraPlaces {
     Isometry3d board = Isometry3d::Identity();
     std::optional<Intrinsics> intrinsics;  ///< known if corners were measured
     std::optional<Vector2d> image;         ///< width and height, px
-    std::vector<FurtherCamera> others{};
+    std::vector<PlacedCamera> others{};
 };
 /// The sensor must measure corners in an image, or poses of a board; else the result is empty.
 std::optional<CameraPlaces> camera_places(const Campaign& campaign, const Parameters& found);

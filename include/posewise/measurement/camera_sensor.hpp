@@ -61,10 +61,11 @@ struct SingleCamera {
     std::optional<Vector2d> image;  ///< width and height, px; nothing: any place
 };
 
-/// A further camera: where it is in the first one's frame, and its lens.
+/// A further camera: where it is in the first one's frame, its lens and its image.
 struct PlacedCamera {
     Isometry3d in_first = Isometry3d::Identity();
     Intrinsics intrinsics;
+    std::optional<Vector2d> image{};
 };
 
 /// A camera that sees corners of a board, or several that are fixed to each other.

@@ -282,7 +282,7 @@ Json camera_to_json(const CameraPlaces& places) {
     json["place"] = detail::base_to_json(places.camera);
     json["board"] = detail::base_to_json(places.board);
     if (places.intrinsics) json["intrinsics"] = intrinsics_to_json(*places.intrinsics);
-    for (const FurtherCamera& other : places.others) {
+    for (const PlacedCamera& other : places.others) {
         json["others"].push_back({{"in_first", detail::base_to_json(other.in_first)},
                                   {"intrinsics", intrinsics_to_json(other.intrinsics)}});
     }

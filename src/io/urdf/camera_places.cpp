@@ -117,7 +117,7 @@ std::optional<CameraPlaces> camera_places(const Campaign& campaign, const Parame
     places->intrinsics = camera->intrinsics(found.sensor);
     places->image = camera->setup().image;
     for (Index c = 1; c < camera->camera_count(); ++c) {
-        places->others.push_back({camera->placed(c, found.sensor), camera->camera(c).image});
+        places->others.push_back(camera->placed(c, found.sensor));
     }
     return places;
 }
