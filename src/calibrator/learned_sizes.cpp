@@ -132,7 +132,7 @@ class SizeEvidence {
     const ParameterSpread& expected_;
     MatrixXd S_;  ///< information of the measurements on the errors, whatever base and targets are
     VectorXd b_;  ///< S times the errors that fit best
-    VectorXd units_;  ///< of the robot's errors
+    VectorXd units_;  ///< one for each error of the robot
 };
 
 }  // namespace

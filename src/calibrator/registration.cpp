@@ -100,7 +100,7 @@ std::string describe_shortage(const Campaign& campaign, const Measurements& mean
                        place, alike, cure);
 }
 
-/// Of views of a camera, too few of which tell the board's pose.
+/// Says how many views of a camera tell the board's pose, where they are too few.
 std::string describe_poor_views(const Seen& is_told) {
     const Index told = is_told.rowwise().any().count();
     return fmt::format(

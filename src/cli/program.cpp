@@ -214,7 +214,7 @@ void warn_of_rounding(const io::ProgramReport& report) {
             : detail::format_short(mm_per_m * loss->largest_slide, 2) + " mm"));
 }
 
-/// Of joints that nobody has compared with the pendant's.
+/// Warns where nobody has compared J3 with the pendant's.
 void warn_of_coupling(const io::CampaignFile& campaign, io::ProgramFormat format) {
     const bool is_stated = !campaign.controller_maker.empty() || !campaign.controller.is_identity();
     if (format != io::ProgramFormat::Fanuc || is_stated) return;

@@ -247,27 +247,31 @@ std::vector<NoiseNumber> CameraSensor::noise_numbers() const {
 void CameraSensor::view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                                    Eigen::Ref<VectorXd> clearances) const {
     const Isometry3d board = camera_from_board(world_from_flange, unknowns);
-    for (Index target = 0; target < target_count(); ++target) {
-        const Index c = target / corner_count();
+    Index target = 0;
+    for (Index c = 0; c < camera_count(); ++c) {
         const auto one = detail::camera_in_first(*this, c, unknowns);
+        const auto& image = camera(c).image;
         const double widest =
             unknown_intrinsics(c).empty() ? this->widest(c) : detail::widest_tangent(one.lens);
-        const Vector3d p = one.seen(board * corner(target % corner_count(), unknowns));
-        const double to_side = std::atan2(p.head<2>().norm(), p.z());
-        double least = std::atan(widest) - to_side;
-        if (normal_) {
-            const Vector3d normal = one.in_first.linear().transpose() * (board.linear() * *normal_);
-            const double tilt = std::atan2(normal.cross(-p).norm(), normal.dot(-p));
-            least = std::min(least, setup_.view.most_tilt - tilt);
+        for (Index k = 0; k < corner_count(); ++k) {
+            const Vector3d p = one.seen(board * corner(k, unknowns));
+            const double to_side = std::atan2(p.head<2>().norm(), p.z());
+            double least = std::atan(widest) - to_side;
+            if (normal_) {
+                const Vector3d normal =
+                    one.in_first.linear().transpose() * (board.linear() * *normal_);
+                const double tilt = std::atan2(normal.cross(-p).norm(), normal.dot(-p));
+                least = std::min(least, setup_.view.most_tilt - tilt);
+            }
+            if (image && least > 0) {
+                const Vector2d place = detail::place_of(one.lens, p);
+                const Vector2d focal(one.lens.values[0], one.lens.values[1]);
+                const Vector2d size = detail::kpx_per_px * *image;
+                least = std::min({least, place.cwiseQuotient(focal).minCoeff(),
+                                  (size - place).cwiseQuotient(focal).minCoeff()});
+            }
+            clearances[target++] = least;
         }
-        if (camera(c).image && least > 0) {
-            const Vector2d place = detail::place_of(one.lens, p);
-            const Vector2d focal(one.lens.values[0], one.lens.values[1]);
-            const Vector2d image = detail::kpx_per_px * *camera(c).image;
-            least = std::min({least, place.cwiseQuotient(focal).minCoeff(),
-                              (image - place).cwiseQuotient(focal).minCoeff()});
-        }
-        clearances[target] = least;
     }
 }
 

@@ -33,6 +33,13 @@ CameraSetup unknown_lens(CameraSetup setup) {
     return setup;
 }
 
+/// Errors of an estimate in its standard deviations.
+VectorXd in_deviations(const Campaign& campaign, const Parameters& truth,
+                       const Estimate& estimate) {
+    return step_between(campaign, truth, estimate.parameters)
+        .cwiseQuotient(standard_deviations(estimate));
+}
+
 /// The same without what it knows of places and of unknown intrinsic parameters.
 Campaign blind(const Campaign& campaign) {
     Campaign blind = campaign;
@@ -65,8 +72,7 @@ TEST(Camera, IsRegisteredFromNothing) {
         const Estimate estimate = identify(exact, simulated.measurements, found.parameters);
         EXPECT_NEAR(estimate.variance_factor, 1,
                     5 * std::sqrt(2.0 / static_cast<double>(estimate.degrees_of_freedom)));
-        const VectorXd error = step_between(exact, simulated.truth, estimate.parameters);
-        EXPECT_LT(error.cwiseQuotient(standard_deviations(estimate)).cwiseAbs().maxCoeff(), 5);
+        EXPECT_LT(in_deviations(exact, simulated.truth, estimate).cwiseAbs().maxCoeff(), 5);
     }
 }
 
@@ -121,12 +127,11 @@ TEST(Camera, FindsWhereMarkersAreAsItsCovarianceSays) {
         const Simulation simulated =
             simulate(campaign, {.pose_count = 20, .repeats = 1, .truth_seed = seed, .seed = seed});
         const Estimate estimate = identify(campaign, simulated.measurements, simulated.truth);
-        const VectorXd error = step_between(campaign, simulated.truth, estimate.parameters);
-        const VectorXd deviations = standard_deviations(estimate);
-        squares += error.cwiseQuotient(deviations).squaredNorm();
-        count += static_cast<double>(error.size());
+        const VectorXd errors = in_deviations(campaign, simulated.truth, estimate);
+        squares += errors.squaredNorm();
+        count += static_cast<double>(errors.size());
         const Index markers = base_parameter_count(campaign) + campaign.robot.parameter_count();
-        EXPECT_LT(deviations.segment(markers, 24).mean(), 0.8e-3);
+        EXPECT_LT(standard_deviations(estimate).segment(markers, 24).mean(), 0.8e-3);
     }
     EXPECT_NEAR(squares / count, 1, 0.25);
 }
@@ -186,9 +191,9 @@ TEST(Camera, FindsHandEyeAndIntrinsicsAsItsCovarianceSays) {
         const Simulation simulated =
             simulate(campaign, {.pose_count = 12, .repeats = 1, .truth_seed = seed, .seed = seed});
         const Estimate estimate = identify(campaign, simulated.measurements, simulated.truth);
-        const VectorXd error = step_between(campaign, simulated.truth, estimate.parameters);
-        squares += error.cwiseQuotient(standard_deviations(estimate)).squaredNorm();
-        count += static_cast<double>(error.size());
+        const VectorXd errors = in_deviations(campaign, simulated.truth, estimate);
+        squares += errors.squaredNorm();
+        count += static_cast<double>(errors.size());
     }
     EXPECT_NEAR(squares / count, 1, 0.35);
 }

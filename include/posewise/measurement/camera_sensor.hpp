@@ -195,7 +195,7 @@ class CameraSensor final : public Sensor {
     CameraSetup setup_;
     Targets origin_;                  ///< where what is on the flange has its origin
     std::optional<Vector3d> normal_;  ///< away from the front of a plane board, in its frame
-    std::vector<OwnUnknowns> own_;    ///< of each camera
+    std::vector<OwnUnknowns> own_;    ///< one for each camera
     Index unknown_count_ = 0;
 };
 

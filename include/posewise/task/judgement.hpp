@@ -138,7 +138,7 @@ struct JudgedGroup {
 /// All poses of one kind, and their groups, in the order of PoseGroup.
 struct Judgement {
     Metrics found;
-    /// Of its errors: a validation may be measured by another kind of sensor.
+    /// Units of its errors: a validation may be measured by another kind of sensor.
     const AmountUnits* units = &length_units;
     std::optional<ExpectedError> expected;
     std::vector<JudgedGroup> groups;

@@ -203,7 +203,7 @@ void read_image(const YamlMap& sensor, SingleCamera& setup) {
     setup.image = size;
 }
 
-/// Cameras beside the first one; whether the file says where each is.
+/// Reads the further cameras. `are_placed` becomes false where the file does not place one.
 std::vector<PlacedCamera> read_others(const YamlValue& list, CameraSetup& setup, bool& are_placed) {
     constexpr std::size_t most = 16;
     const std::vector<YamlValue> values = list.list();

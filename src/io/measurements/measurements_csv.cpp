@@ -320,7 +320,7 @@ class RowReader {
                 number.ok() && number.value == 0 && first == 1 ? at_zero : ""));
     }
 
-    /// Of the row at hand, from 0.
+    /// The camera of the row at hand, counted from 0.
     Index read_camera() const {
         if (!field_of_camera_) return 0;
         const Index count = camera_count(*campaign_.sensor);
