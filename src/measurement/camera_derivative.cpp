@@ -115,11 +115,8 @@ void set_unknowns(const CameraSensor& sensor, Index camera, Index k, const Corne
     const Index errors = sensor.corner_error_count();
     if (errors > 0) rows.middleCols<3>(3 * k) = corner.by_corner;
     if (!sensor.setup().known_place) rows.middleCols<6>(errors) = corner.by_place;
-    Index next = sensor.first_unknown(camera);
-    if (camera > 0) {
-        rows.middleCols<6>(next) = corner.by_camera;
-        next += 6;
-    }
+    if (camera > 0) rows.middleCols<6>(sensor.first_unknown(camera)) = corner.by_camera;
+    Index next = sensor.first_intrinsic(camera);
     for (const Index value : sensor.unknown_intrinsics(camera)) {
         rows.col(next++) = corner.by_values.col(value);
     }
@@ -135,7 +132,7 @@ CameraInFirst detail::camera_in_first(const CameraSensor& sensor, Index camera,
     const bool is_polynomial = lens.distortion == Distortion::BrownConrady;
     lens.widest = is_polynomial ? std::min(sensor.widest(camera), 3.0) : sensor.widest(camera);
     const Index first = sensor.first_unknown(camera);
-    Index next = first + (camera > 0 ? 6 : 0);
+    Index next = sensor.first_intrinsic(camera);
     for (const Index k : sensor.unknown_intrinsics(camera)) {
         lens.values[static_cast<std::size_t>(k)] = unknowns[next++];
     }

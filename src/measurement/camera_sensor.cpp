@@ -112,14 +112,12 @@ Isometry3d CameraSensor::place(const VectorXd& unknowns) const {
 PlacedCamera CameraSensor::placed(Index camera, const VectorXd& unknowns) const {
     const SingleCamera& one = this->camera(camera);
     PlacedCamera placed{Isometry3d::Identity(), one.intrinsics, one.image};
-    Index next = first_unknown(camera);
     if (camera > 0) {
-        placed.in_first = detail::frame_from(unknowns.segment<6>(next));
-        next += 6;
+        placed.in_first = detail::frame_from(unknowns.segment<6>(first_unknown(camera)));
     }
     const std::vector<Index>& unknown = unknown_intrinsics(camera);
     VectorXd values = placed.intrinsics.values();
-    values(unknown) = unknowns.segment(next, std::ssize(unknown));
+    values(unknown) = unknowns.segment(first_intrinsic(camera), std::ssize(unknown));
     placed.intrinsics = placed.intrinsics.with(values);
     return placed;
 }
@@ -144,16 +142,14 @@ VectorXd CameraSensor::unknowns(const Isometry3d& place, const Intrinsics& intri
     for (Index c = 0; c < camera_count(); ++c) {
         const auto other = static_cast<std::size_t>(c - 1);
         const bool is_placed = c > 0 && other < others.size();
-        Index next = first_unknown(c);
-        if (c > 0) {
-            if (is_placed) unknowns.segment<6>(next) = tool_unknowns(others[other].in_first);
-            next += 6;
+        if (is_placed) {
+            unknowns.segment<6>(first_unknown(c)) = tool_unknowns(others[other].in_first);
         }
         const Intrinsics& lens = c == 0      ? intrinsics
                                  : is_placed ? others[other].intrinsics
                                              : camera(c).intrinsics;
         const std::vector<Index>& unknown = unknown_intrinsics(c);
-        unknowns.segment(next, std::ssize(unknown)) = lens.values()(unknown);
+        unknowns.segment(first_intrinsic(c), std::ssize(unknown)) = lens.values()(unknown);
     }
     return unknowns;
 }
@@ -203,7 +199,7 @@ std::vector<bool> CameraSensor::unknown_is_angle() const {
 std::vector<const AmountUnits*> CameraSensor::unknown_units() const {
     auto units = Sensor::unknown_units();
     for (Index c = 0; c < camera_count(); ++c) {
-        auto next = units.begin() + first_unknown(c) + (c > 0 ? 6 : 0);
+        auto next = units.begin() + first_intrinsic(c);
         for (const Index k : unknown_intrinsics(c)) {
             *next++ = k < 4 ? &pixel_units : &plain_units;
         }

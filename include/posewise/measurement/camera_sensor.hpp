@@ -118,6 +118,10 @@ class CameraSensor final : public Sensor {
     /// The first of a camera's unknowns: of the first camera intrinsic parameters, of another its
     /// pose.
     Index first_unknown(Index camera) const { return own_[static_cast<std::size_t>(camera)].first; }
+    /// The first of its intrinsic parameters, after the pose of another than the first camera.
+    Index first_intrinsic(Index camera) const {
+        return first_unknown(camera) + (camera > 0 ? 6 : 0);
+    }
     /// Largest x/z at which a camera's lens as stated does not fold the image.
     double widest(Index camera) const { return own_[static_cast<std::size_t>(camera)].widest; }
     Index corner_count() const { return static_cast<Index>(setup_.corners.size()); }
