@@ -29,7 +29,7 @@ function(posewise_module name)
   target_compile_definitions(posewise_${name} PRIVATE ${posewise_definitions})
   target_compile_options(posewise_${name} PRIVATE ${posewise_options})
   set_target_properties(posewise_${name} PROPERTIES
-    UNITY_BUILD ${POSEWISE_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 6
+    UNITY_BUILD ${POSEWISE_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 10
     POSITION_INDEPENDENT_CODE ON)  # the Python module is a shared library
   # What takes a compiler longest to read, precompiled once for all modules, and once more with the
   # formats of files. That files include what they need is seen by the check of the headers.

@@ -10,9 +10,9 @@ namespace posewise::detail {
 namespace {
 
 constexpr int iteration_limit = 100;
-constexpr double tolerance = 0.005;  // of a size, to end at
+constexpr double size_tolerance = 0.005;  // of a size, to end at
 
-const double log_factor = std::log(error_size_factor);
+const double log_size_factor = std::log(error_size_factor);
 
 /// The most probable of a size whose `count` errors have these squares, summed up: the root of
 /// n - S / s^2 + log(s / expected) / log(factor)^2, which grows with s.
@@ -23,7 +23,7 @@ double most_probable(double expected, double squares, Index count) {
     for (int i = 0; i < 60; ++i) {
         const double u = 0.5 * (low + high);
         const double slope = static_cast<double>(count) - squares * std::exp(-2 * u) +
-                             (u - middle) / (log_factor * log_factor);
+                             (u - middle) / (log_size_factor * log_size_factor);
         (slope > 0 ? high : low) = u;
     }
     return std::exp(high);
@@ -66,7 +66,7 @@ class SizeEvidence {
         const std::vector<SharedSize> sizes = shared_sizes(spread, robot_);
         const std::vector<SharedSize> expected = shared_sizes(expected_, robot_);
         for (std::size_t k = 0; k < sizes.size(); ++k) {
-            const double u = std::log(sizes[k].size / expected[k].size) / log_factor;
+            const double u = std::log(sizes[k].size / expected[k].size) / log_size_factor;
             sum -= u * u / 2;
         }
         return sum;
@@ -79,7 +79,7 @@ class SizeEvidence {
             const MatrixXd C = covariance(precisions_of(spread));
             const VectorXd in_units = (C * b_).cwiseAbs2() + C.diagonal();
             const VectorXd squares = units_.cwiseAbs2().cwiseProduct(in_units.head(units_.size()));
-            if (update(spread, squares) < tolerance) break;
+            if (update(spread, squares) < size_tolerance) break;
         }
         return spread;
     }
@@ -137,7 +137,9 @@ class SizeEvidence {
 
 }  // namespace
 
-double log_size_variance(double told) { return 1 / (2 * told + 1 / (log_factor * log_factor)); }
+double log_size_variance(double told) {
+    return 1 / (2 * told + 1 / (log_size_factor * log_size_factor));
+}
 
 bool are_sizes_open(const Campaign& campaign, const Loss& loss) {
     return campaign.spread.is_prior && campaign.spread.is_open && !campaign.prior &&

@@ -21,6 +21,14 @@ MatrixXd triangular_factor(MatrixXd A) {
     return A.topRows(std::min(A.rows(), A.cols())).triangularView<Eigen::Upper>();
 }
 
+OrthogonalFactors orthogonal_factors(MatrixXd A) {
+    Eigen::Ref<MatrixXd> in_place(A);
+    const HouseholderInPlace qr(in_place);
+    const Index count = std::min(A.rows(), A.cols());
+    return {qr.householderQ() * MatrixXd::Identity(A.rows(), count),
+            A.topRows(count).triangularView<Eigen::Upper>()};
+}
+
 MatrixXd triangular_factor_of_many(const RowMatrixXd& A) {
     const Index at_once = std::max<Index>(1024, 4 * A.cols());
     if (A.rows() <= 2 * at_once) return triangular_factor(A);

@@ -11,7 +11,14 @@ namespace posewise::detail {
 /// The R of A = Q R by reflections [Householder 1958], min(rows, cols) x cols.
 MatrixXd triangular_factor(MatrixXd A);
 
-/// The same of many rows, some at a time, up to the signs of its rows.
+/// Both: Q has min(rows, cols) columns.
+struct OrthogonalFactors {
+    MatrixXd Q;
+    MatrixXd R;
+};
+OrthogonalFactors orthogonal_factors(MatrixXd A);
+
+/// The R of many rows, some at a time, up to the signs of its rows.
 MatrixXd triangular_factor_of_many(const RowMatrixXd& A);
 
 /// Rows below rows; either may be empty.

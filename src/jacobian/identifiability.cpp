@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -295,14 +293,12 @@ Index least_pose_count(const Campaign& stated, const StopSignal& stop) {
 std::vector<WeakDirection> weakest_directions(const MatrixXd& stacked, Index count,
                                               Index terms_each) {
     const Index size = stacked.cols();
-    const MatrixXd R = stacked.rows() > size ? detail::triangular_factor(stacked) : stacked;
-    const Eigen::JacobiSVD<MatrixXd, Eigen::FullPivHouseholderQRPreconditioner> svd(
-        R, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const auto [values, V] = detail::singular_directions(stacked);
     std::vector<WeakDirection> directions;
     for (Index i = size - 1; i >= 0 && static_cast<Index>(directions.size()) < count; --i) {
         WeakDirection direction;
-        if (i < svd.singularValues().size()) direction.singular_value = svd.singularValues()[i];
-        for (Index k = 0; k < size; ++k) direction.terms.push_back({k, svd.matrixV()(k, i)});
+        if (i < stacked.rows()) direction.singular_value = values[i];
+        for (Index k = 0; k < size; ++k) direction.terms.push_back({k, V(k, i)});
         std::stable_sort(direction.terms.begin(), direction.terms.end(),
                          [](const ParameterTerm& a, const ParameterTerm& b) {
                              return std::abs(a.coefficient) > std::abs(b.coefficient);

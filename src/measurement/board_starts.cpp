@@ -1,8 +1,8 @@
 #include "board_starts.hpp"
 
-#include <Eigen/SVD>
 #include <cmath>
 
+#include "core/decompositions.hpp"
 #include "posewise/model/chain.hpp"
 
 namespace posewise::detail {
@@ -23,13 +23,10 @@ Shape shape_of(const std::vector<Vector3d>& corners) {
     Shape shape;
     shape.middle = points.rowwise().mean();
     points.colwise() -= shape.middle;
-    const Eigen::JacobiSVD<MatrixXd> svd(points * points.transpose(), Eigen::ComputeFullU);
-    shape.axes = svd.matrixU();
+    const detail::SingularDirections directions = detail::singular_directions(points.transpose());
+    shape.axes = directions.V;
     if (shape.axes.determinant() < 0) shape.axes.col(2) *= -1;
-    // Not by singular values of the squares, which would be exact to 1e-8 only.
-    for (Index axis = 0; axis < 3; ++axis) {
-        shape.extents[axis] = (shape.axes.col(axis).transpose() * points).norm();
-    }
+    shape.extents = directions.values;
     return shape;
 }
 
@@ -148,9 +145,7 @@ std::optional<Isometry3d> projected_pose_of(const Body& body,
 
 }  // namespace
 
-VectorXd null_vector(const MatrixXd& A) {
-    return Eigen::JacobiSVD<MatrixXd>(A, Eigen::ComputeFullV).matrixV().rightCols<1>();
-}
+VectorXd null_vector(const MatrixXd& A) { return singular_directions(A).V.rightCols<1>(); }
 
 Matrix3d homography(const std::vector<Vector2d>& plane, const std::vector<Vector2d>& image) {
     const Scaled from = scale(plane), to = scale(image);

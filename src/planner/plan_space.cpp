@@ -30,7 +30,7 @@ constexpr Index draws_a_pose = 30;  // of the pool, the most sensitive of which 
 constexpr double same = 1e-6;       // relative to the value
 
 /// What the starts share.
-struct Problem {
+struct Search {
     const DesignSpace& space;
     const RowMatrixXd& pool;
     const Blocks& blocks;
@@ -39,7 +39,7 @@ struct Problem {
 };
 
 /// Parameters that count.
-Index interesting_count(const Problem& problem) {
+Index interesting_count(const Search& problem) {
     return problem.space.parameter_count - static_cast<Index>(problem.options.nuisance.size());
 }
 
@@ -85,7 +85,7 @@ Criterion smooth_relative(Criterion criterion) {
 
 /// Of some poses drawn from the pool, that keep their distance from `others`, the one that is most
 /// sensitive to Z; nothing if none does.
-std::optional<Index> draw_sensitive(const Problem& problem, const RowMatrixXd& others,
+std::optional<Index> draw_sensitive(const Search& problem, const RowMatrixXd& others,
                                     const MatrixXd& Z, RandomStream& random) {
     const double least = problem.space.least_joint_distance;
     std::optional<Index> best;
@@ -107,7 +107,7 @@ std::optional<Index> draw_sensitive(const Problem& problem, const RowMatrixXd& o
 }
 
 /// A choice from a random part of the pool, so that starts differ.
-RowMatrixXd choose_from_part(const Problem& problem, Index start) {
+RowMatrixXd choose_from_part(const Search& problem, Index start) {
     const PlanOptions& options = problem.options;
     RandomStream random(options.seed, static_cast<std::uint64_t>(start));
     const Index size = std::min(problem.pool.rows(), 20 * options.pose_count);
@@ -130,7 +130,7 @@ bool is_cut_short(Ending ending, const StopSignal& stop) {
            (ending == Ending::NotRun && stop.is_set());
 }
 
-Index start_limit(const Problem& problem) {
+Index start_limit(const Search& problem) {
     if (problem.options.starts > 0) return problem.options.starts;
     constexpr double ample = 1.5;  // numbers for each parameter
     const double rows = mean_rows(problem.blocks) * static_cast<double>(problem.options.pose_count);
@@ -165,7 +165,7 @@ Index count_at_best(const std::vector<Refinement>& results, const StopSignal& st
 }
 
 /// Information of held and planned poses.
-MatrixXd information_of(const Problem& problem, const RowMatrixXd& plan) {
+MatrixXd plan_information(const Search& problem, const RowMatrixXd& plan) {
     const DesignSpace& space = problem.space;
     MatrixXd M = detail::information_of(problem.options.held.rows, space.parameter_count);
     for (Index i = 0; i < plan.rows(); ++i) M += space.information(plan.row(i).transpose());
@@ -174,19 +174,19 @@ MatrixXd information_of(const Problem& problem, const RowMatrixXd& plan) {
 
 /// What is stated of the plan at last: its value, by its rows as verify() has it. Throws InputError
 /// where they do not identify the parameters.
-void conclude(const Problem& problem, const RowMatrixXd& configurations, PlannedPoses& planned) {
+void conclude(const Search& problem, const RowMatrixXd& configurations, PlannedPoses& planned) {
     const RowMatrixXd rows = rows_of(problem.space, problem.options.held, configurations);
     check_all_is_seen(problem.space, rows);
     planned.configurations = configurations;
     planned.value = evaluate_rows(problem.objective, rows);
-    planned.information = information_of(problem, configurations);
+    planned.information = plan_information(problem, configurations);
     planned.is_interrupted = problem.options.stop.is_set();
 }
 
 /// The choice from the whole pool, which becomes `pool_choice`, and the refinements of all starts,
 /// of which it is the first; those whose choice identifies too little are left empty. That choice
 /// is made beside the other starts, since by G it takes as long as many of them.
-std::vector<Refinement> refine_starts(const Problem& problem, const SelectOptions& select,
+std::vector<Refinement> refine_starts(const Search& problem, const SelectOptions& select,
                                       Choice& pool_choice) {
     std::atomic<double> pool_bound = std::numeric_limits<double>::infinity();  // until it is made
     const PlanOptions& options = problem.options;
@@ -231,7 +231,7 @@ std::vector<Refinement> refine_starts(const Problem& problem, const SelectOption
 
 /// The best of the starts, crossed with the others: the best choice of the poses that all of them
 /// ended at, refined, as long as that is better; its poses are among them then.
-Refinement cross(const Problem& problem, std::vector<Refinement>& results) {
+Refinement cross(const Search& problem, std::vector<Refinement>& results) {
     const PlanOptions& options = problem.options;
     if (options.stop.is_set()) return best_of(results);
     Support met;
@@ -261,7 +261,7 @@ Refinement cross(const Problem& problem, std::vector<Refinement>& results) {
 
 /// The plan with one to three poses redrawn: the best of some tries, once the new ones have moved
 /// to where they tell most beside the others.
-RowMatrixXd kick(const Problem& problem, const RowMatrixXd& plan, const MatrixXd& Z,
+RowMatrixXd kick(const Search& problem, const RowMatrixXd& plan, const MatrixXd& Z,
                  RandomStream& random) {
     constexpr Index tries = 3;
     const Index most = std::min<Index>(3, plan.rows());
@@ -289,7 +289,7 @@ RowMatrixXd kick(const Problem& problem, const RowMatrixXd& plan, const MatrixXd
 
 /// Kicks without gain to give up after: some for each pose, fewer where a refinement takes long, as
 /// it does with many poses and parameters, with kinks of the criterion and along constraints.
-Index patience(const Problem& problem) {
+Index patience(const Search& problem) {
     const auto L = static_cast<double>(problem.space.parameter_count);
     const auto K = static_cast<double>(problem.options.pose_count);
     const double each = 10 * std::max(0.5, std::min({std::sqrt(1e5 / (L * L * K)), K / 12, 2.0}));
@@ -300,7 +300,7 @@ Index patience(const Problem& problem) {
 
 /// Kicks the best plan and refines it again, some kicks at once, of which the best is kept, until
 /// many in a row, the more the more starts there may be, have gained nothing.
-Refinement improve_with_kicks(const Problem& problem, Refinement best) {
+Refinement improve_with_kicks(const Search& problem, Refinement best) {
     const PlanOptions& options = problem.options;
     RefineOptions rough = rough_refinement(options, 1e-4);
     Objective softened = problem.objective;
@@ -316,7 +316,7 @@ Refinement improve_with_kicks(const Problem& problem, Refinement best) {
     std::uint64_t stream = static_cast<std::uint64_t>(start_limit(problem));
     for (Index failures = kicks_at_once; failures <= most_failures && !options.stop.is_set();
          failures += kicks_at_once) {
-        const MatrixXd Z = gradient(softened, information_of(problem, best.configurations));
+        const MatrixXd Z = gradient(softened, plan_information(problem, best.configurations));
         std::vector<Refinement> found(kicks_at_once);
         rough.worth = best.value;
         for_each_index(kicks_at_once, [&](Index i) {
@@ -340,7 +340,7 @@ Refinement improve_with_kicks(const Problem& problem, Refinement best) {
 }
 
 /// The best choice from a pool: where hardly any pose is feasible there is nothing to refine.
-PlannedPoses choose_only(const Problem& problem, const SelectOptions& select) {
+PlannedPoses choose_only(const Search& problem, const SelectOptions& select) {
     PlannedPoses planned;
     planned.criterion = problem.options.criterion;
     planned.seed = problem.options.seed;
@@ -369,7 +369,7 @@ PlannedPoses plan_poses(const DesignSpace& space, const RowMatrixXd& pool, const
         throw InputError("starts is " + std::to_string(options.starts) + ", must not be negative");
     }
     SelectOptions select = select_options(space, pool, options);
-    const Problem problem{space, pool, blocks, options, make_objective(blocks, select)};
+    const Search problem{space, pool, blocks, options, make_objective(blocks, select)};
     if (space.is_pool_only) {
         if (options.starts > 0) select.starts = options.starts;
         select.stop = options.stop;

@@ -61,7 +61,7 @@ void read_criterion(const Stated& stated, CriterionChoice& criterion) {
     criterion = named;
 }
 
-void read_earlier(const Stated& stated, EarlierUse& use) {
+void set_earlier(const Stated& stated, EarlierUse& use) {
     std::vector<std::string> moved;
     stated("as_prior", use.is_prior);
     stated("only", use.only);
@@ -95,7 +95,7 @@ PlanCall read_call(const Stated& stated) {
     stated("repeats", request.repeats, Number{.least = 1, .most = 1e9});
     stated("starts", request.starts, Count{0, 1000000});
     stated("seed", request.seed);
-    read_earlier(stated, request.earlier);
+    set_earlier(stated, request.earlier);
     return call;
 }
 
@@ -182,7 +182,7 @@ CalibrationCall calibration_call(const Keywords& keywords) {
     read_prior(stated, call.prior);
     if (stated.has("sizes")) stated("sizes", call.learns_sizes.emplace(), OneOf(sizes));
     stated("free", call.free);
-    read_earlier(stated, call.earlier);
+    set_earlier(stated, call.earlier);
     return call;
 }
 

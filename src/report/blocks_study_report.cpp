@@ -17,7 +17,9 @@ using detail::format_short;
 
 constexpr int percent_decimals = 2;
 
-std::string percent(double efficiency) { return format_fixed(100 * efficiency, percent_decimals); }
+std::string efficiency_text(double efficiency) {
+    return format_fixed(100 * efficiency, percent_decimals);
+}
 
 detail::Table chosen_table(const BlocksStudy& study, int digits) {
     detail::Table table{{"poses", "criterion", "value", "bound", "efficiency/%", "random 5 %",
@@ -28,14 +30,14 @@ detail::Table chosen_table(const BlocksStudy& study, int digits) {
         std::vector<std::string> cells{
             std::to_string(row.pose_count), std::string(criterion_name(row.criterion)),
             format_short(chosen.value, digits), format_short(chosen.bound, digits),
-            percent(chosen.efficiency)};
+            efficiency_text(chosen.efficiency)};
         const RandomBand& random = row.random;
         if (random.subsets > 0) {
             for (const SubsetValue& one : {random.p5, random.p50, random.p95}) {
                 cells.push_back(format_short(one.value, digits));
             }
             for (const SubsetValue& one : {random.p5, random.p50, random.p95}) {
-                cells.push_back(percent(one.efficiency));
+                cells.push_back(efficiency_text(one.efficiency));
             }
         }
         table.rows.push_back(std::move(cells));
@@ -50,7 +52,8 @@ detail::Table own_table(const BlocksStudy& study, int digits) {
             table.rows.push_back(
                 {std::to_string(row.pose_count), std::string(criterion_name(row.criterion)),
                  format_short(found.value, digits), format_short(row.chosen.bound, digits),
-                 percent(found.efficiency), detail::escape_controls(study.subsets[number].name)});
+                 efficiency_text(found.efficiency),
+                 detail::escape_controls(study.subsets[number].name)});
         }
     }
     return table;
@@ -81,10 +84,10 @@ std::string sum_up(const BlocksStudy& study, const BlocksStudyRow& row) {
     std::string text =
         fmt::format("by {}, {} of {} candidates reach {} % of the largest value that is possible",
                     criterion_name(criterion), row.pose_count, study.candidate_count,
-                    percent(row.chosen.efficiency));
+                    efficiency_text(row.chosen.efficiency));
     if (row.random.subsets > 0) {
         text += fmt::format("; half of {} random ones reach {} %", row.random.subsets,
-                            percent(row.random.p50.efficiency));
+                            efficiency_text(row.random.p50.efficiency));
     }
     return text;
 }
@@ -110,7 +113,7 @@ std::string describe_own(const BlocksStudy& study) {
         for (const auto& [number, found] : row.own) {
             text += fmt::format("{}{}: {} % by {}", text.empty() ? "" : "; ",
                                 detail::escape_controls(study.subsets[number].name),
-                                percent(found.efficiency), criterion_name(row.criterion));
+                                efficiency_text(found.efficiency), criterion_name(row.criterion));
         }
     }
     return text;

@@ -36,7 +36,7 @@ constexpr Index sweep_size = 4096;
 constexpr Index few_starts = 5;  // fewer, as each takes seconds, run side by side before any proof
 
 ScoredPoses make_choice(const SearchProblem& problem, std::vector<Index> poses) {
-    const detail::Score score = problem.score(problem.regularised_information(poses));
+    const detail::SearchScore score = problem.score(problem.regularised_information(poses));
     return {std::move(poses), score};
 }
 
@@ -293,7 +293,7 @@ Outcome search(SearchProblem problem, const Relaxation& relaxation) {
             return outcome;
         }
     }
-    const detail::Score tried = outcome.best.score;
+    const detail::SearchScore tried = outcome.best.score;
     run_starts(problem, relaxation, shortlist, starts, first, outcome);
     if (count_at_best(outcome.starts, outcome.best.score.value) < enough) {
         const ScoredPoses crossed =

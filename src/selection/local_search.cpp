@@ -133,7 +133,7 @@ class LocalSearch {
                                          : problem_.regularised_information(choice_.poses);
         if (by.is_certain) {
             is_scored_ = false;
-        } else if (const Score score = problem_.score(M); is_better(score, choice_.score)) {
+        } else if (const SearchScore score = problem_.score(M); is_better(score, choice_.score)) {
             choice_.score = score;
         } else {
             choice_.poses[at] = removed;
@@ -202,7 +202,7 @@ double ruggedness(const SearchProblem& problem, const Shortlist& shortlist) {
     return 1 + 9 * square * square;
 }
 
-bool is_better(const Score& a, const Score& b) {
+bool is_better(const SearchScore& a, const SearchScore& b) {
     if (a.identifies != b.identifies) return a.identifies;
     return a.value > b.value + 1e-12 * std::max(1e-6, std::abs(b.value));
 }
@@ -213,7 +213,7 @@ MatrixXd SearchProblem::regularised_information(const std::vector<Index>& poses)
     return M;
 }
 
-Score SearchProblem::score(const MatrixXd& regularised) const {
+SearchScore SearchProblem::score(const MatrixXd& regularised) const {
     MatrixXd M = regularised;
     M.diagonal().array() -= ridge;
     const double value = evaluate(objective, M);

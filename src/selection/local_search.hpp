@@ -8,12 +8,12 @@ namespace posewise::detail {
 /// How good a choice is: first whether it identifies the parameters, then the objective, of the
 /// regularised information matrix if it does not. While a search goes on both are by information
 /// matrices, which is quick; judge() is by the rows.
-struct Score {
+struct SearchScore {
     bool identifies = false;
     double value = -std::numeric_limits<double>::infinity();
 };
 /// Whether `a` is better than `b` beyond rounding.
-bool is_better(const Score& a, const Score& b);
+bool is_better(const SearchScore& a, const SearchScore& b);
 
 /// What all starts of one selection share.
 struct SearchProblem {
@@ -27,13 +27,13 @@ struct SearchProblem {
     double ruggedness = 10;
 
     MatrixXd regularised_information(const std::vector<Index>& poses) const;
-    Score score(const MatrixXd& regularised) const;
+    SearchScore score(const MatrixXd& regularised) const;
 };
 
 /// A choice of candidates in the search, and how good it is.
 struct ScoredPoses {
     std::vector<Index> poses;
-    Score score;
+    SearchScore score;
 };
 
 /// The same poses, ascending, scored by choice_value(): what is compared at the end, with what is

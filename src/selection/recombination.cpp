@@ -9,7 +9,7 @@ namespace posewise::detail {
 namespace {
 
 constexpr std::size_t most_members = 12;
-constexpr Index patience = 3;  // generations that change nothing, to end after
+constexpr Index idle_generations = 3;  // generations that change nothing, to end after
 
 using Poses = std::vector<Index>;
 
@@ -86,7 +86,8 @@ ScoredPoses recombine(const SearchProblem& problem, const Shortlist& shortlist,
     const SelectOptions& options = problem.options;
     const auto children = static_cast<Index>(population.members().size());
     Index unchanged = 0;
-    for (Index generation = 0; unchanged < patience && !options.stop.is_set(); ++generation) {
+    for (Index generation = 0; unchanged < idle_generations && !options.stop.is_set();
+         ++generation) {
         const std::vector<ScoredPoses>& parents = population.members();
         const auto count = static_cast<Index>(parents.size());
         if (count < 2) break;
@@ -101,7 +102,7 @@ ScoredPoses recombine(const SearchProblem& problem, const Shortlist& shortlist,
                 cross(problem, shortlist, parents[static_cast<std::size_t>(pair[0])].poses,
                       parents[static_cast<std::size_t>(pair[1])].poses, random);
             if (static_cast<Index>(poses.size()) < options.pose_count) return;
-            const Score score = problem.score(problem.regularised_information(poses));
+            const SearchScore score = problem.score(problem.regularised_information(poses));
             const ScoredPoses improved = improve(problem, known, {std::move(poses), score});
             if (population.has(improved.poses)) return;  // nothing improves a member
             born[static_cast<std::size_t>(child)] =

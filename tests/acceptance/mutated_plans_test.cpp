@@ -23,7 +23,7 @@ namespace {
 using namespace testing;
 using Json = nlohmann::ordered_json;
 
-const std::string design = source_folder() + "/tests/fuzz/corpus/campaign/points.yaml";
+const std::string cell_design = source_folder() + "/tests/fuzz/corpus/campaign/points.yaml";
 const std::vector<std::string> words{"optimal", "converged", "time limit",     "d",     "robot",
                                      "1",       "random",    "configurations", "crane", "1/"};
 
@@ -132,7 +132,7 @@ class MutatedPlans : public ::testing::Test {
         ChoiceOptions asked;
         asked.pose_count = 6;
         asked.criterion = Criterion::O3;
-        asked.sources.campaign = design;
+        asked.sources.campaign = cell_design;
         asked.sources.candidates = "measured.csv";
         const Candidates candidates = measured_candidates(measured_);
         return {"choice",
@@ -152,7 +152,7 @@ class MutatedPlans : public ::testing::Test {
         asked.pose_count = 8;
         asked.criterion = Criterion::D;
         asked.proof = 0;
-        asked.sources.campaign = design;
+        asked.sources.campaign = cell_design;
         const Plan made =
             choose(campaign_, random_candidates(campaign_, 40, campaign_.seed), asked);
         EXPECT_EQ(made.ending, Ending::Converged);
@@ -176,7 +176,7 @@ class MutatedPlans : public ::testing::Test {
         asked.pool_count = 200;
         asked.workspace_count = 10;
         asked.starts = 1;
-        asked.sources.campaign = design;
+        asked.sources.campaign = cell_design;
         Json file = write(make_plan(campaign_, asked).plan);
         file["poses"][2]["via"] = file["poses"][1]["joints"];
         return {"poses",
@@ -208,7 +208,7 @@ class MutatedPlans : public ::testing::Test {
 
     const TemporaryFolder folder_;
     const std::string path_ = folder_.path("plan.json");
-    const io::CampaignFile campaign_ = io::read_campaign(design);
+    const io::CampaignFile campaign_ = io::read_campaign(cell_design);
     Measurements measured_;
     std::vector<Case> cases_;
 };

@@ -11,6 +11,7 @@
 #include "posewise/io/result_files.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/planning.hpp"
+#include "support/campaign_from.hpp"
 #include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -28,12 +29,8 @@ std::string written(const Plan& plan) {
     return text.str();
 }
 
-io::CampaignFile design(const std::string& name) {
-    return io::read_campaign(source_folder() + "/designs/" + name);
-}
-
 std::string chosen(Criterion criterion) {
-    const auto campaign = design("fanuc_r2000ic_165f/campaign.yaml");
+    const auto campaign = design_campaign("fanuc_r2000ic_165f/campaign.yaml");
     ChoiceOptions options;
     options.criterion = criterion;
     options.pose_count = 8;
@@ -42,7 +39,7 @@ std::string chosen(Criterion criterion) {
 }
 
 std::string planned() {
-    const auto file = design("cell_demo/campaign.yaml");
+    const auto file = design_campaign("cell_demo/campaign.yaml");
     PlanningOptions options(6);
     options.criterion = Criterion::D;
     options.pool_count = 800;

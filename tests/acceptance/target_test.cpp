@@ -20,15 +20,12 @@
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/report/reports.hpp"
 #include "posewise/task/planning.hpp"
+#include "support/campaign_from.hpp"
 #include "support/campaigns.hpp"
 #include "support/places.hpp"
 
 namespace posewise {
 namespace {
-
-io::CampaignFile design(const std::string& name) {
-    return io::read_campaign(source_folder() + "/designs/" + name);
-}
 
 /// The RMS of robots drawn one by one from the linear model: each parameter a normal number, sizes
 /// and model error log-normal.
@@ -58,7 +55,7 @@ VectorXd draw_rms(const PositionErrors& errors, const Campaign& campaign, const 
 TEST(PredictRange, AgreesWithRobotsDrawnOneByOne) {
     for (const char* const name :
          {"fanuc_r2000ic_165f/campaign.yaml", "abb_irb120/planning.yaml", "ur10/campaign.yaml"}) {
-        const Campaign campaign = design(name);
+        const Campaign campaign = testing::design_campaign(name);
         const auto configurations = [&](Index count, std::uint64_t seed) {
             return detail::random_configurations(campaign.robot, count, seed);
         };

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "../../src/core/decompositions.hpp"
 #include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
@@ -159,8 +160,7 @@ TEST(Correction, OfARedundantRobotIsTheSmallestChange) {
         if (is_held(correction) || correction.is_singular) continue;
         FlangeMotion motion;
         robot.differentiate(Isometry3d::Identity(), correction.joints, cell.found.robot, motion);
-        const Eigen::FullPivLU<MatrixXd> lu(MatrixXd(motion.joint_twists));
-        const VectorXd idle = lu.kernel().col(0).normalized();
+        const VectorXd idle = detail::singular_directions(motion.joint_twists).V.rightCols<1>();
         const VectorXd change = correction.joints - nominal;
         EXPECT_LT(std::abs(idle.dot(change)), 1e-4 * change.norm()) << i;
     }

@@ -12,14 +12,14 @@ namespace {
 
 using namespace testing;
 
-std::string error_of(const std::string& text) {
+std::string campaign_error(const std::string& text) {
     const TemporaryFolder folder;
     const std::string path = folder.write("campaign.yaml", text);
     return input_error_of([&] { read_campaign(path); });
 }
 
-void expect_messages_of(const std::vector<Slip>& slips) {
-    expect_messages(campaign_text, slips, error_of, "campaign.yaml:");
+void expect_campaign_messages(const std::vector<Slip>& slips) {
+    expect_messages(campaign_text, slips, campaign_error, "campaign.yaml:");
 }
 
 TEST(BadCampaign, Files) {
@@ -29,8 +29,8 @@ TEST(BadCampaign, Files) {
     std::filesystem::create_directory(folder.path("folder"));
     EXPECT_EQ(input_error_of([&] { read_campaign(folder.path("folder")); }),
               "folder: is a directory; must be a file");
-    EXPECT_NE(error_of(std::string("\0\xFF\xFE\x01", 4)), "no error");
-    expect_messages_of({
+    EXPECT_NE(campaign_error(std::string("\0\xFF\xFE\x01", 4)), "no error");
+    expect_campaign_messages({
         {campaign_text, "", " is empty, or begins with no key; must be a campaign in YAML"},
         {campaign_text, ", a", " is empty, or begins with no key; must be a campaign in YAML"},
         {campaign_text, "name: \"a\\\x01\"\n",
@@ -52,12 +52,12 @@ TEST(BadCampaign, HostileNesting) {
     for (const std::string part : {"[", "{a: ", "- ", "? ", "&a [", "'", "\"", "!!", "<<: *a\n"}) {
         std::string text;
         while (text.size() < 100000) text += part;
-        EXPECT_NE(error_of(text), "no error") << part;
+        EXPECT_NE(campaign_error(text), "no error") << part;
     }
 }
 
 TEST(BadCampaign, Keys) {
-    expect_messages_of({
+    expect_campaign_messages({
         {"name: crane\n", "", "1:1: the file has no key name; it must be stated"},
         {"position_mm: [1000, 0, -500], ", "",
          "19:7: base has no key position_mm, position_m or position_um; it must be stated"},
@@ -82,7 +82,7 @@ TEST(BadCampaign, Robots) {
     for (int i = 0; i < 100; ++i) {
         joints += "    a" + std::to_string(i) + ": {limits_deg: [0, 1]}\n";
     }
-    expect_messages_of({
+    expect_campaign_messages({
         {"    q2: {", "    q1: {", "5:5: key 'q1' occurs twice, first in line 4; keep one"},
         {"    lift: {", "    mm: {",
          "6:5: 'mm' cannot name a joint; must be letters, digits and underscores, not a unit"},
@@ -106,7 +106,7 @@ TEST(BadCampaign, Robots) {
 TEST(BadCampaign, Numbers) {
     const std::string rule = "; must be a finite number without unit";
     const std::string range = "; must be from 1e-09 to 1e+06 mm";
-    expect_messages_of({
+    expect_campaign_messages({
         {"[-90, 90]", "[-90, .inf]",
          "4:28: robot.joints.q1.limits_deg[2] is '.inf', which is not a number" + rule},
         {"sigma_mm: 0.05", "sigma_mm: nan",
@@ -154,14 +154,14 @@ TEST(BadCampaign, Numbers) {
          "18:17: model_error_mm is a list; must be a number, or auto"},
         {"sigma_mm: 0.05", "sigma_mm: 1e10", "16:13: sensor.sigma_mm is '1e10'" + range},
     });
-    EXPECT_EQ(error_of(replaced(campaign_text, "model_error_mm: 0.2", "model_error_mm: 0")),
+    EXPECT_EQ(campaign_error(replaced(campaign_text, "model_error_mm: 0.2", "model_error_mm: 0")),
               "no error");
 }
 
 TEST(BadCampaign, SensorsAndTheRest) {
     const std::string positions = "position_mm: [[100, 0, 0], [0, 200, -10]]";
     const std::string either = "17:12: sensor.targets must have either count or position_mm";
-    expect_messages_of({
+    expect_campaign_messages({
         {"kind: points", "kind: point", "15:9: sensor.kind is 'point'; did you mean 'points'?"},
         {"{position_mm", "{count: 2, position_mm", either},
         {positions, "known: false", either},
@@ -190,7 +190,7 @@ TEST(BadCampaign, ALongTextIsCutInTheMessage) {
     std::string omegas;
     for (int i = 0; i < 5000; ++i) omegas += "\u03a9";
     const std::string message =
-        error_of(replaced(campaign_text, "kind: points", "kind: " + omegas));
+        campaign_error(replaced(campaign_text, "kind: points", "kind: " + omegas));
     EXPECT_LT(message.size(), 170U);
     EXPECT_NE(message.find("\u03a9...'; must be points"), std::string::npos) << message;
 }
@@ -201,7 +201,7 @@ TEST(BadCampaign, PitchesThatCannotBe) {
     const auto lift = [](const std::string& pitch) {
         return "limits_mm: [0, 500], pitch_" + pitch;
     };
-    expect_messages_of({
+    expect_campaign_messages({
         {"limits_mm: [0, 500]", lift("mm: 0"), of_lift + "'0'; must be from 0.001 to 1000 mm"},
         {"limits_mm: [0, 500]", lift("mm: -20"), of_lift + "'-20'; must be from 0.001 to 1000 mm"},
         {"limits_mm: [0, 500]", lift("mm: .nan"), of_lift + "'.nan'" + number},
@@ -240,7 +240,7 @@ TEST(BadCampaign, GravityAndHarmonicsThatCannotBe) {
         slip.part = "  elements:\n";
         slip.by = "  " + slip.by + "\n  elements:\n";
     }
-    expect_messages_of(slips);
+    expect_campaign_messages(slips);
 }
 
 }  // namespace

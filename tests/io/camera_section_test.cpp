@@ -30,7 +30,7 @@ const std::string camera =
     "  place: {position_mm: [10, 20, 30], rpy_deg: [0, 0, 90]}\n"
     "  view: {most_tilt_deg: 45, least_corners: 5, front: +z}\n";
 
-CampaignFile read(const std::string& text) {
+CampaignFile with_camera(const std::string& text) {
     return parse_campaign(two_joint_arm + text, "c.yaml");
 }
 
@@ -39,7 +39,7 @@ const CameraSetup& setup_of(const Campaign& campaign) {
 }
 
 TEST(ReadCamera, TakesWhatIsStated) {
-    const Campaign campaign = read(camera);
+    const Campaign campaign = with_camera(camera);
     const CameraSetup& setup = setup_of(campaign);
     EXPECT_TRUE(setup.is_on_flange);
     EXPECT_NEAR(setup.sigma, 0.25, 1e-12);
@@ -59,12 +59,12 @@ TEST(ReadCamera, TakesWhatIsStated) {
 }
 
 TEST(ReadCamera, LearnsSizesOnlyIfTold) {
-    EXPECT_FALSE(read(camera).spread.is_open);
-    EXPECT_TRUE(read(camera + "sizes: learned\n").spread.is_open);
+    EXPECT_FALSE(with_camera(camera).spread.is_open);
+    EXPECT_TRUE(with_camera(camera + "sizes: learned\n").spread.is_open);
 }
 
 TEST(ReadCamera, FindsWhatItIsNotTold) {
-    const Campaign campaign = read(
+    const Campaign campaign = with_camera(
         "sensor: {kind: camera, camera: fixed, sigma_px: 0.3, intrinsics: {known: false},\n"
         "  board: {points_mm: [[0, 0, 0], [50, 0, 0], [50, 50, 0], [0, 50, 20]]}}\n");
     EXPECT_FALSE(campaign.has_nominal_targets);
@@ -76,7 +76,7 @@ TEST(ReadCamera, FindsWhatItIsNotTold) {
 TEST(ReadCamera, SaysWhatIsWrong) {
     const auto expect_error = [](const std::string& good, const std::string& bad,
                                  const std::string& message) {
-        const std::string error = input_error_of([&] { read(replaced(camera, good, bad)); });
+        const std::string error = input_error_of([&] { with_camera(replaced(camera, good, bad)); });
         EXPECT_NE(error.find(message), std::string::npos) << error;
         EXPECT_EQ(error.substr(0, 7), "c.yaml:") << error;
     };
@@ -178,7 +178,7 @@ TEST(ReadCamera, RefusesFilesOfAnotherImageOrAnotherModel) {
 
 Measurements corners(const std::string& text, const std::string& campaign = camera) {
     const TemporaryFolder folder;
-    return read_measurements_csv(folder.write("m.csv", text), read(campaign));
+    return read_measurements_csv(folder.write("m.csv", text), with_camera(campaign));
 }
 
 TEST(ReadCorners, TakesARowForEachInAnyOrder) {
@@ -206,7 +206,7 @@ const std::string two_cameras =
     "       place: {position_mm: [100, 0, 0], rpy_deg: [0, 5, 0]}}\n";
 
 TEST(ReadCamera, TakesFurtherCameras) {
-    const Campaign campaign = read(two_cameras);
+    const Campaign campaign = with_camera(two_cameras);
     const CameraSetup& setup = setup_of(campaign);
     ASSERT_EQ(setup.others.size(), 1U);
     EXPECT_EQ(setup.others[0].sigma, setup.sigma);
@@ -217,14 +217,14 @@ TEST(ReadCamera, TakesFurtherCameras) {
     const auto place = std::find(names.begin(), names.end(), "camera2.x") - names.begin();
     EXPECT_NEAR(campaign.nominal.sensor[place], 0.1, 1e-15);
     EXPECT_FALSE(
-        read(replaced(two_cameras,
-                      ",\n       place: {position_mm: [100, 0, 0], rpy_deg: [0, 5, 0]}", ""))
+        with_camera(replaced(two_cameras,
+                             ",\n       place: {position_mm: [100, 0, 0], rpy_deg: [0, 5, 0]}", ""))
             .has_nominal_targets);
 }
 
 TEST(ReadCamera, TakesHowWellMarkersAreKnown) {
     const Campaign campaign =
-        read(replaced(camera, "square_mm: 25", "square_mm: 25, sigma_mm: 0.3"));
+        with_camera(replaced(camera, "square_mm: 25", "square_mm: 25, sigma_mm: 0.3"));
     EXPECT_NEAR(setup_of(campaign).corner_sigma, 3e-4, 1e-15);
     EXPECT_EQ(campaign.sensor->unknown_names().front(), "board.p1.x");
 }
@@ -239,8 +239,8 @@ TEST(ReadCorners, OfSeveralCamerasSayWhichSawThem) {
     EXPECT_EQ(measured.observations(0, 14), 0.6);
     const TemporaryFolder folder;
     const std::string path = folder.write("m.csv", "");
-    write_measurements_csv(path, read(two_cameras), measured, {});
-    const Measurements again = read_measurements_csv(path, read(two_cameras));
+    write_measurements_csv(path, with_camera(two_cameras), measured, {});
+    const Measurements again = read_measurements_csv(path, with_camera(two_cameras));
     EXPECT_TRUE((again.is_seen == measured.is_seen).all());
     const auto error_of = [&](const std::string& row, const std::string& campaign) {
         return input_error_of([&] { corners(header + row, campaign); });
@@ -279,7 +279,7 @@ TEST(ReadCorners, TakesAViewARow) {
 }
 
 TEST(ReadCorners, AreWrittenAsTheyAreRead) {
-    const CampaignFile campaign = read(camera);
+    const CampaignFile campaign = with_camera(camera);
     const Measurements measured = corners(
         "config,sample,q1_deg,q2_deg,point,u_px,v_px\n"
         "a,0,10,20,2,640.25,480\na,0,10,20,3,641,480\na,1,10,20,2,640,481\nb,0,11,20,1,100,200\n");

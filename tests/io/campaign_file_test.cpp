@@ -9,25 +9,22 @@
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "support/campaign_from.hpp"
 #include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
 namespace {
 
+using testing::campaign_from;
 using testing::campaign_text;
 using testing::input_error_of;
 using testing::replaced;
 using testing::TemporaryFolder;
 constexpr double pi = std::numbers::pi;
 
-CampaignFile read(const std::string& text) {
-    const TemporaryFolder folder;
-    return read_campaign(folder.write("campaign.yaml", text));
-}
-
 TEST(ReadCampaign, TakesJointsWithLimitsInAnyUnit) {
-    const Chain robot = read(campaign_text).robot;
+    const Chain robot = campaign_from(campaign_text).robot;
     ASSERT_EQ(robot.joint_count(), 3);
     EXPECT_EQ(robot.joints()[0].name, "q1");
     EXPECT_DOUBLE_EQ(robot.joints()[0].upper, pi / 2);
@@ -37,7 +34,7 @@ TEST(ReadCampaign, TakesJointsWithLimitsInAnyUnit) {
 }
 
 TEST(ReadCampaign, TakesElementsWithSignsOffsetsAndCoupling) {
-    const std::vector<Element> elements = read(campaign_text).robot.elements();
+    const std::vector<Element> elements = campaign_from(campaign_text).robot.elements();
     ASSERT_EQ(elements.size(), 6U);
     EXPECT_EQ(elements[2].value, 0.312);
     EXPECT_EQ(elements[2].parameter, "Tx1");
@@ -57,8 +54,8 @@ TEST(ReadCampaign, TakesElementsWithSignsOffsetsAndCoupling) {
 TEST(ReadCampaign, DoesNotMindBlanksInElements) {
     const auto text = replaced(campaign_text, "Ry -q2 + 0.5*q1 + 90 deg [dq2]",
                                "'  Ry - q2+0.5 * q1+90deg[ dq2 ] '");
-    const Element spaced = read(text).robot.elements()[3];
-    const Element plain = read(campaign_text).robot.elements()[3];
+    const Element spaced = campaign_from(text).robot.elements()[3];
+    const Element plain = campaign_from(campaign_text).robot.elements()[3];
     EXPECT_EQ(spaced.value, plain.value);
     EXPECT_EQ(spaced.parameter, plain.parameter);
     ASSERT_EQ(spaced.joints.size(), plain.joints.size());
@@ -70,9 +67,10 @@ TEST(ReadCampaign, DoesNotMindBlanksInElements) {
 
 TEST(ReadCampaign, TakesErrorsThatDependOnTheConfiguration) {
     const Chain robot =
-        read(replaced(campaign_text, "90 deg [dq2]",
-                      "90 deg [dq2] [k1 * sin(q2)] [k2*cos(2*q1 - q2 + 30 deg)] [ratio*0.5*q2] "
-                      "[coupling*(q1-q2)]"))
+        campaign_from(
+            replaced(campaign_text, "90 deg [dq2]",
+                     "90 deg [dq2] [k1 * sin(q2)] [k2*cos(2*q1 - q2 + 30 deg)] [ratio*0.5*q2] "
+                     "[coupling*(q1-q2)]"))
             .robot;
     EXPECT_EQ(robot.parameter_names(), (std::vector<std::string>{"dq1", "Tx1", "dq2", "k1", "k2",
                                                                  "ratio", "coupling", "Ty2"}));
@@ -88,7 +86,7 @@ TEST(ReadCampaign, TakesErrorsThatDependOnTheConfiguration) {
 CampaignFile read_level(const std::string& keys, const std::string& spread = "length_mm: 2") {
     auto text = replaced(campaign_text, "Ry -q2 + 0.5*q1", "Ry -q2");
     text = replaced(text, "length_mm: 2", spread);
-    return read(replaced(text, "  elements:\n", keys + "  elements:\n"));
+    return campaign_from(replaced(text, "  elements:\n", keys + "  elements:\n"));
 }
 
 TEST(ReadCampaign, TakesGravityAndHarmonics) {
@@ -114,11 +112,11 @@ TEST(ReadCampaign, TakesGravityAndHarmonics) {
 TEST(ReadCampaign, GivesASlideWithAPitchItsHarmonics) {
     const std::string text =
         replaced(campaign_text, "limits_mm: [0, 500]", "limits_mm: [0, 500], pitch_mm: 20");
-    EXPECT_DOUBLE_EQ(read(text).robot.joint(2).pitch, 0.02);
+    EXPECT_DOUBLE_EQ(campaign_from(text).robot.joint(2).pitch, 0.02);
     const auto count = [](const CampaignFile& file) { return file.robot.parameter_count(); };
-    EXPECT_EQ(count(read(text)), 4) << "these are stated";
+    EXPECT_EQ(count(campaign_from(text)), 4) << "these are stated";
     const std::string harmonics = "  harmonics: {orders: [1, 3], joints: [lift]}\n  elements:\n";
-    const CampaignFile some = read(replaced(text, "  elements:\n", harmonics));
+    const CampaignFile some = campaign_from(replaced(text, "  elements:\n", harmonics));
     const auto names = some.robot.parameter_names();
     EXPECT_EQ(std::vector<std::string>(names.begin() + 1, names.begin() + 5),
               (std::vector<std::string>{"lift.sin(lift)", "lift.cos(lift)", "lift.sin(3lift)",
@@ -126,22 +124,23 @@ TEST(ReadCampaign, GivesASlideWithAPitchItsHarmonics) {
 
     const std::string unsized = replaced(text, ", parameters: {dq2: 0.5 mrad, Tx1: 4 mm}", "");
     const std::string full = replaced(unsized, "robot:\n", "robot:\n  errors: full\n");
-    const CampaignFile file = read(full);
-    EXPECT_EQ(count(file), count(read(replaced(full, ", pitch_mm: 20", ""))) + 4);
+    const CampaignFile file = campaign_from(full);
+    EXPECT_EQ(count(file), count(campaign_from(replaced(full, ", pitch_mm: 20", ""))) + 4);
     const auto sizes = shared_sizes(file.spread, file.robot);
     const auto slide = std::ranges::find(sizes, "slide_harmonic", &SharedSize::key);
     ASSERT_NE(slide, sizes.end());
     EXPECT_EQ(slide->size, 8e-6);
     EXPECT_FALSE(slide->is_angle);
     EXPECT_EQ(slide->members.size(), 4U);
-    const CampaignFile stated =
-        read(replaced(full, "angle_mrad: 3",
-                      "angle_mrad: 3, slide_harmonic_um: 5, parameters: {lift.cos(2lift): 20 um}"));
+    const CampaignFile stated = campaign_from(
+        replaced(full, "angle_mrad: 3",
+                 "angle_mrad: 3, slide_harmonic_um: 5, parameters: {lift.cos(2lift): 20 um}"));
     const VectorXd scale = robot_error_sizes(stated.spread, stated.robot);
     EXPECT_EQ((scale.array() == 5e-6).count(), 3);
     EXPECT_EQ((scale.array() == 20e-6).count(), 1);
     const auto freed = [&](const std::string& errors) {
-        return count(read(replaced(unsized, "robot:\n", "robot:\n  errors: " + errors + '\n')));
+        return count(
+            campaign_from(replaced(unsized, "robot:\n", "robot:\n  errors: " + errors + '\n')));
     };
     EXPECT_EQ(freed("[class:harmonics]"), 4 + 2 * 4);
     EXPECT_EQ(freed("[lift.sin(2lift)]"), 1);
@@ -161,9 +160,9 @@ TEST(ReadCampaign, ReducesGeometryBesideTerms) {
         text = replaced(text, name, "");
     text = replaced(text, ", parameters: {dq2: 0.5 mrad, Tx1: 4 mm}", "");
     text = replaced(text, "robot:\n", "robot:\n  errors: geometric\n");
-    const CampaignFile geometric = read(text);
+    const CampaignFile geometric = campaign_from(text);
     const CampaignFile file =
-        read(replaced(text, "  elements:\n", "  harmonics: {orders: [2]}\n  elements:\n"));
+        campaign_from(replaced(text, "  elements:\n", "  harmonics: {orders: [2]}\n  elements:\n"));
     EXPECT_EQ(file.error_model, ErrorModel::Complete);
     EXPECT_EQ(file.robot.parameter_count(), geometric.robot.parameter_count() + 4);
 }
@@ -181,7 +180,8 @@ TEST(ReadCampaign, TakesOtherErrorModelsThanTheFileStates) {
     for (const CampaignFile& file : files) {
         const std::string name(error_model_name(file.error_model));
         EXPECT_EQ(parse_error_model(name), file.error_model);
-        const auto alone = read(replaced(unsized, "robot:\n", "robot:\n  errors: " + name + '\n'));
+        const auto alone =
+            campaign_from(replaced(unsized, "robot:\n", "robot:\n  errors: " + name + '\n'));
         EXPECT_EQ(parameter_names(file), parameter_names(alone)) << name;
         EXPECT_EQ(file.spread.is_prior, alone.spread.is_prior) << name;
     }
@@ -198,7 +198,8 @@ TEST(ReadCampaign, ExpectsErrorsOfTheRobotsClass) {
         replaced(campaign_text, "model_error_mm: 0.2\n", ""),
         "spread: {length_mm: 2, angle_mrad: 3, parameters: {dq2: 0.5 mrad, Tx1: 4 mm}}\n", "");
     const auto of_class = [&](const std::string& name) {
-        return read(replaced(stated, "robot:", "robot:\n  errors: full\n  class: " + name));
+        return campaign_from(
+            replaced(stated, "robot:", "robot:\n  errors: full\n  class: " + name));
     };
     const CampaignFile unknown = of_class("unknown");
     EXPECT_EQ(unknown.robot_class, RobotClass::Unknown);
@@ -221,7 +222,7 @@ TEST(ReadCampaign, ExpectsErrorsOfTheRobotsClass) {
 }
 
 TEST(ReadCampaign, TakesSensorBaseSpreadAndDefaults) {
-    const CampaignFile file = read(campaign_text);
+    const CampaignFile file = campaign_from(campaign_text);
     const Campaign& campaign = file;
     EXPECT_EQ(campaign.name, "crane");
     const auto& sensor = dynamic_cast<const PointSensor&>(*campaign.sensor);
@@ -249,13 +250,13 @@ TEST(ReadCampaign, TakesSensorBaseSpreadAndDefaults) {
 
 TEST(ReadCampaign, TurnsTheBaseAboutFixedAxesXThenYThenZ) {
     const auto text = replaced(campaign_text, "rpy_deg: [0, 0, 90]", "rpy_deg: [90, 0, 90]");
-    const Matrix3d R = read(text).nominal.world_from_base.linear();
+    const Matrix3d R = campaign_from(text).nominal.world_from_base.linear();
     EXPECT_TRUE((R * Vector3d::UnitY()).isApprox(Vector3d::UnitZ()));  // by roll; yaw leaves it
 }
 
 TEST(ReadCampaign, NeedsOnlyNameRobotAndSensor) {
     const auto end = campaign_text.find("model_error_mm");
-    const CampaignFile file = read(replaced(
+    const CampaignFile file = campaign_from(replaced(
         campaign_text.substr(0, end), "position_mm: [[100, 0, 0], [0, 200, -10]]", "count: 3"));
     EXPECT_EQ(file.model_error, 1e-4);
     EXPECT_EQ(file.spread.length, 1e-3);
@@ -272,7 +273,7 @@ TEST(ReadCampaign, NeedsOnlyNameRobotAndSensor) {
 
 TEST(ReadCampaign, TakesKnownTargets) {
     const auto text = replaced(campaign_text, "-10]]}", "-10]], known: true}");
-    const Campaign campaign = read(text);
+    const Campaign campaign = campaign_from(text);
     EXPECT_EQ(campaign.nominal.sensor.size(), 0);
     const auto& sensor = dynamic_cast<const PointSensor&>(*campaign.sensor);
     EXPECT_EQ(sensor.target_position(1, VectorXd()), Vector3d(0, 0.2, -0.01));
@@ -287,7 +288,7 @@ robot:
   elements: [Rz q1, Tz 0.3 m, Ry q2, Tz 0.5 m, Ry q3, Tx 0.4 m]
 sensor: {kind: points, sigma_mm: 0.1, targets: {count: 3}}
 )";
-    const CampaignFile file = read(text);
+    const CampaignFile file = campaign_from(text);
     EXPECT_EQ(file.error_model, ErrorModel::Full);
     EXPECT_TRUE(file.spread.is_prior);
     const auto names = parameter_names(file);
@@ -304,7 +305,7 @@ sensor: {kind: points, sigma_mm: 0.1, targets: {count: 3}}
     EXPECT_EQ(size_of("q1.torque(q2)"), -1);
 
     const CampaignFile stated =
-        read(text + "spread: {offset_mrad: 2, gravity_mrad: 3}\nprior: false\n");
+        campaign_from(text + "spread: {offset_mrad: 2, gravity_mrad: 3}\nprior: false\n");
     EXPECT_EQ(*stated.spread.offset, 2e-3);
     EXPECT_EQ(stated.spread.gravity, 3e-3);
     EXPECT_EQ(stated.spread.harmonic, 0.15e-3);
@@ -312,18 +313,18 @@ sensor: {kind: points, sigma_mm: 0.1, targets: {count: 3}}
     EXPECT_TRUE(find_identifiable(stated).dropped.empty());  // without priors it is reduced
     EXPECT_LT(stated.robot.parameter_count(), file.robot.parameter_count());
 
-    const CampaignFile unsaid = read(replaced(text, "  errors: full\n", ""));
+    const CampaignFile unsaid = campaign_from(replaced(text, "  errors: full\n", ""));
     EXPECT_EQ(unsaid.error_model, ErrorModel::Full);
-    EXPECT_EQ(read(text + "model_error_mm: auto\n").model_error, unsaid.model_error);
+    EXPECT_EQ(campaign_from(text + "model_error_mm: auto\n").model_error, unsaid.model_error);
     EXPECT_FALSE(unsaid.model_error_common);
-    EXPECT_EQ(read(text + "model_error_common: 0.9\n").model_error_common, 0.9);
+    EXPECT_EQ(campaign_from(text + "model_error_common: 0.9\n").model_error_common, 0.9);
     EXPECT_EQ(unsaid.robot.parameter_names(), file.robot.parameter_names());
 
-    const CampaignFile on_wall =
-        read(replaced(text, "errors: full", "errors: full\n  gravity: {direction: [1, 0, 0]}"));
+    const CampaignFile on_wall = campaign_from(
+        replaced(text, "errors: full", "errors: full\n  gravity: {direction: [1, 0, 0]}"));
     const std::string of_one = "errors: full\n  gravity: {joints: [q2]}";
     EXPECT_NE(input_error_of([&] {
-                  read(replaced(text, "errors: full", of_one));
+                  campaign_from(replaced(text, "errors: full", of_one));
               }).find("campaign.yaml:4:21: robot.gravity.joints is stated, but errors: full has"),
               std::string::npos);
     const auto has_torque_of_q1 = on_wall.robot.parameter_names();
@@ -343,12 +344,12 @@ TEST(PlannedCampaign, HasTheErrorsToPlanWithWhichAreNoFewer) {
               ErrorModel::Stated);
     const std::string poorer =
         replaced(campaign_text, "robot:\n", "planning: {errors: stated}\nrobot:\n  errors: full\n");
-    EXPECT_NE(input_error_of([&] { read(poorer); }).find("poorer than robot.errors"),
+    EXPECT_NE(input_error_of([&] { campaign_from(poorer); }).find("poorer than robot.errors"),
               std::string::npos);
 }
 
 TEST(ReadCampaign, HasTheStatedErrorsIfAnyIsStated) {
-    const CampaignFile file = read(campaign_text);
+    const CampaignFile file = campaign_from(campaign_text);
     EXPECT_EQ(file.error_model, ErrorModel::Stated);
     EXPECT_EQ(file.robot.parameter_names(), (std::vector<std::string>{"dq1", "Tx1", "dq2", "Ty2"}));
     EXPECT_EQ(file.nominal.robot, VectorXd::Zero(4));
@@ -363,7 +364,7 @@ robot:
   elements: [Rz q1, Tx 1 m, Tz 0.1 m, Ry q2, Tx 0.8 m]
 sensor: {kind: points, sigma_mm: 0.1, targets: {count: 3}}
 )";
-    const CampaignFile file = read(text);
+    const CampaignFile file = campaign_from(text);
     EXPECT_EQ(file.error_model, ErrorModel::Complete);
     EXPECT_EQ(file.declared_robot.parameter_count(), 0);
     // 4R + 2P + 3n of all, of which base 6 and targets 9.
@@ -387,7 +388,7 @@ TEST(ReadCampaign, FindsAsManyErrorsInTheFanucAsItsDesignStates) {
     std::ifstream in(path);
     const std::string text(std::istreambuf_iterator<char>(in), {});
     const auto complete = replaced(text, "  elements:", "  errors: complete\n  elements:");
-    EXPECT_EQ(read(complete).robot.parameter_count(), 18);
+    EXPECT_EQ(campaign_from(complete).robot.parameter_count(), 18);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "campaign_text.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/measurement/sensors.hpp"
+#include "support/campaign_from.hpp"
 #include "support/cells.hpp"
 #include "support/places.hpp"
 #include "support/temporary_folder.hpp"
@@ -10,6 +11,7 @@
 namespace posewise::io {
 namespace {
 
+using testing::campaign_from;
 using testing::degree;
 using testing::input_error_of;
 using testing::replaced;
@@ -48,15 +50,10 @@ cell:
   speed_deg_per_s: [90, 180]
 )";
 
-CampaignFile read(const std::string& text) {
-    const TemporaryFolder folder;
-    return read_campaign(folder.write("campaign.yaml", text));
-}
-
 std::string error_with(const std::string& part, const std::string& by) {
     const std::string text = replaced(cell_text, part, by);
     EXPECT_FALSE(text.empty()) << part;
-    return input_error_of([&] { read(text); });
+    return input_error_of([&] { campaign_from(text); });
 }
 
 /// The error must point at this line and column and have these words in it.
@@ -68,7 +65,7 @@ void expect_error(const std::string& part, const std::string& by, const std::str
 }
 
 TEST(ReadCell, TakesEveryPartInMetresAndRadians) {
-    const Cell cell = read(cell_text).cell;
+    const Cell cell = campaign_from(cell_text).cell;
     EXPECT_DOUBLE_EQ(cell.limit_margin.angle, 5 * degree);
     EXPECT_DOUBLE_EQ(cell.fixed_joints.at(1), -10 * degree);
     EXPECT_DOUBLE_EQ(cell.least_joint_distance, 3 * degree);
@@ -101,9 +98,10 @@ TEST(ReadCell, TakesEveryPartInMetresAndRadians) {
 
 TEST(ReadCell, TakesSumsOfJointsAndHowTheRobotMoves) {
     const Cell cell =
-        read(replaced(cell_text, "  home_deg",
-                      "  joint_sums: {q2 - q1 + 10 deg: {limits_deg: [-80, 90]}}\n"
-                      "  acceleration_deg_per_s2: [180, 360]\n  settle_s: 0.5\n  home_deg"))
+        campaign_from(
+            replaced(cell_text, "  home_deg",
+                     "  joint_sums: {q2 - q1 + 10 deg: {limits_deg: [-80, 90]}}\n"
+                     "  acceleration_deg_per_s2: [180, 360]\n  settle_s: 0.5\n  home_deg"))
             .cell;
     ASSERT_EQ(cell.joint_sums.size(), 1U);
     EXPECT_EQ(cell.joint_sums[0].name, "q2 - q1 + 10 deg");
@@ -130,7 +128,7 @@ TEST(ReadCell, TakesSumsOfJointsAndHowTheRobotMoves) {
 }
 
 TEST(ReadCell, IsEmptyIfTheFileHasNone) {
-    const Cell cell = read(testing::campaign_text).cell;
+    const Cell cell = campaign_from(testing::campaign_text).cell;
     EXPECT_TRUE(cell.links.empty());
     EXPECT_FALSE(cell.sight.has_value());
 }
@@ -200,7 +198,7 @@ TEST(ReadCell, KnowsTheDemonstrationCell) {
 
 TEST(ReadSensor, TakesNoiseOfATrackerAndOfEachAxis) {
     const auto noise_with = [](const std::string& by) {
-        const Campaign campaign = read(replaced(cell_text, "sigma_mm: 0.05", by));
+        const Campaign campaign = campaign_from(replaced(cell_text, "sigma_mm: 0.05", by));
         return dynamic_cast<const PointSensor&>(*campaign.sensor).noise();
     };
     const auto tracker =
@@ -222,11 +220,11 @@ TEST(ReadRobot, TakesTheRepeatabilityOfJoints) {
     const std::string q2 = "q2: {limits_deg: [-120, 120]}";
     const auto text =
         replaced(cell_text, q2, "q2: {limits_deg: [-120, 120], repeatability_urad: 20}");
-    const VectorXd repeatability = read(text).joint_repeatability;
+    const VectorXd repeatability = campaign_from(text).joint_repeatability;
     ASSERT_EQ(repeatability.size(), 2);
     EXPECT_EQ(repeatability[0], 0);
     EXPECT_DOUBLE_EQ(repeatability[1], 2e-5);
-    EXPECT_EQ(read(cell_text).joint_repeatability.size(), 0);
+    EXPECT_EQ(campaign_from(cell_text).joint_repeatability.size(), 0);
     expect_error(q2, "q2: {limits_deg: [-120, 120], repeatability_mm: 1}", "5:53",
                  "the joint drives a rotation");
     expect_error(q2, "q2: {limits_deg: [-120, 120], repeatability_urad: -1}", "5:55", "positive");

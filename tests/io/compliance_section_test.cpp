@@ -6,6 +6,7 @@
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/model/chain.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "support/campaign_from.hpp"
 #include "support/temporary_folder.hpp"
 
 // Compliances in a campaign file, the torques they need, and the masses of a URDF.
@@ -21,12 +22,9 @@ std::string text_with(const std::string& compliance) {
     return replaced(level, "  elements:\n", "  compliance: " + compliance + "\n  elements:\n");
 }
 
-CampaignFile read(const std::string& text) {
-    const TemporaryFolder folder;
-    return read_campaign(folder.write("campaign.yaml", text));
+CampaignFile read_with(const std::string& compliance) {
+    return campaign_from(text_with(compliance));
 }
-
-CampaignFile read_with(const std::string& compliance) { return read(text_with(compliance)); }
 
 const std::string weights = "{links: {q2: {mass_kg: 10, center_mm: [0, 0, 500]}}}";
 const std::string torques = "{torques_Nm: {q2: 300, q1: 40}}";
@@ -92,7 +90,7 @@ TEST(ComplianceSection, SaysWhatIsWrong) {
     for (Slip& slip : slips) slip.part = weights;
     expect_messages(
         text_with(weights), slips,
-        [](const std::string& text) { return input_error_of([&] { read(text); }); },
+        [](const std::string& text) { return input_error_of([&] { campaign_from(text); }); },
         "campaign.yaml:7:");
 }
 

@@ -3,6 +3,7 @@
 #include "campaign_text.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "support/robots.hpp"
 #include "support/temporary_folder.hpp"
 
 // What a campaign says of its controller's joints.
@@ -11,8 +12,6 @@ namespace posewise::io {
 namespace {
 
 using namespace testing;
-
-constexpr double degree = std::numbers::pi / 180;
 
 /// Six joints; the controller's section is line 7.
 const std::string robot_text = R"(name: arm
@@ -23,11 +22,11 @@ sensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}
 
 )";
 
-ControllerJoints read(const std::string& section) {
+ControllerJoints controller_of(const std::string& section) {
     return parse_campaign(robot_text + "controller: " + section + '\n', "arm.yaml").controller;
 }
 
-std::string error_of(const std::string& section) {
+std::string controller_error(const std::string& section) {
     const TemporaryFolder folder;
     const std::string path = folder.write("arm.yaml", robot_text + "controller: " + section + '\n');
     return input_error_of([&] { read_campaign(path); });
@@ -43,7 +42,7 @@ TEST(ControllerSection, IsTheRobotsOwnWhereItIsMissing) {
 }
 
 TEST(ControllerSection, ReadsSomeJointsByNumber) {
-    const ControllerJoints joints = read("{joints: {J3: q3 - q2, J6: -q6 + 90 deg}}");
+    const ControllerJoints joints = controller_of("{joints: {J3: q3 - q2, J6: -q6 + 90 deg}}");
     const VectorXd c = joints.to_controller(some_joints()) / degree;
     EXPECT_EQ(joints.names()[0], "J1");
     EXPECT_NEAR(c[0], 10, 1e-12);
@@ -53,26 +52,27 @@ TEST(ControllerSection, ReadsSomeJointsByNumber) {
 
 TEST(ControllerSection, ReadsAllJointsByNameOrInAList) {
     const ControllerJoints named =
-        read("{joints: {a: -q1, b: q2, c: q3 + 0.5*q2, d: 100 mrad + q4, e: q5, f: q6}}");
+        controller_of("{joints: {a: -q1, b: q2, c: q3 + 0.5*q2, d: 100 mrad + q4, e: q5, f: q6}}");
     EXPECT_EQ(named.names()[5], "f");
     VectorXd expected(6);
     expected << -10, 20, 40, 40 + 0.1 / degree, 50, 60;
     EXPECT_LT((named.to_controller(some_joints()) / degree - expected).norm(), 1e-10);
-    const ControllerJoints listed = read("{joints: [-q1, q2, q3 + 0.5*q2, q4 + 100 mrad, q5, q6]}");
+    const ControllerJoints listed =
+        controller_of("{joints: [-q1, q2, q3 + 0.5*q2, q4 + 100 mrad, q5, q6]}");
     EXPECT_EQ(listed.names()[5], "J6");
     EXPECT_LT((listed.from_model() - named.from_model()).norm(), 1e-15);
     EXPECT_LT((listed.offset() - named.offset()).norm(), 1e-15);
 }
 
 TEST(ControllerSection, KnowsFanuc) {
-    const ControllerJoints joints = read("{maker: fanuc, j23_factor: 1}");
+    const ControllerJoints joints = controller_of("{maker: fanuc, j23_factor: 1}");
     EXPECT_NEAR(joints.to_controller(some_joints())[2], 10 * degree, 1e-12);
-    EXPECT_NEAR(read("{maker: fanuc, j23_factor: -1}").to_controller(some_joints())[2], 50 * degree,
-                1e-12);
+    EXPECT_NEAR(controller_of("{maker: fanuc, j23_factor: -1}").to_controller(some_joints())[2],
+                50 * degree, 1e-12);
 }
 
 TEST(ControllerSection, ReadsPulses) {
-    const ControllerJoints joints = read("{pulses_per_deg: [1341.38, 1, 2, 3, 4, 5]}");
+    const ControllerJoints joints = controller_of("{pulses_per_deg: [1341.38, 1, 2, 3, 4, 5]}");
     EXPECT_NEAR(joints.pulses_per_unit()[0] * degree, 1341.38, 1e-9);
     EXPECT_EQ(joints.names()[0], "q1");
 }
@@ -130,7 +130,7 @@ TEST(ControllerSection, SaysWhatIsWrongWhere) {
         {"{factor: 1}", "unknown key 'factor' in controller; must be joints, maker"},
     };
     for (const auto& [section, words] : slips) {
-        const std::string message = error_of(section);
+        const std::string message = controller_error(section);
         EXPECT_NE(message.find(words), std::string::npos) << section << "\n" << message;
         EXPECT_EQ(message.rfind("arm.yaml:7:", 0), 0U) << section << "\n" << message;
     }

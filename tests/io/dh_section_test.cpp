@@ -4,6 +4,7 @@
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/robot_files.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "support/campaign_from.hpp"
 #include "support/robots.hpp"
 #include "support/slips.hpp"
 #include "support/sweep.hpp"
@@ -14,6 +15,7 @@ namespace {
 
 using namespace detail;
 
+using testing::campaign_from;
 using testing::degree;
 using testing::input_error_of;
 using testing::TemporaryFolder;
@@ -36,13 +38,8 @@ std::string campaign_of(const std::string& rows, const std::string& convention =
            "  errors: geometric\nsensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n";
 }
 
-CampaignFile read(const std::string& text) {
-    const TemporaryFolder folder;
-    return read_campaign(folder.write("campaign.yaml", text));
-}
-
 TEST(DhSection, IsReadWithOffsetsSignsCouplingsAndFixedRows) {
-    const CampaignFile file = read(campaign_of(rows_of_a_rail));
+    const CampaignFile file = campaign_from(campaign_of(rows_of_a_rail));
     const Chain& robot = file.declared_robot;
     ASSERT_EQ(robot.joint_count(), 3);
     EXPECT_EQ(robot.joints()[0].name, "rail");
@@ -66,7 +63,7 @@ TEST(DhSection, IsReadWithOffsetsSignsCouplingsAndFixedRows) {
 TEST(DhSection, KeepsThePitchOfASlide) {
     const std::string rows = testing::replaced(rows_of_a_rail, "limits_mm: [0, 900]",
                                                "limits_mm: [0, 900], pitch_mm: 20");
-    const Chain robot = read(campaign_of(rows)).declared_robot;
+    const Chain robot = campaign_from(campaign_of(rows)).declared_robot;
     EXPECT_DOUBLE_EQ(robot.joint(0).pitch, 0.02);
     const Chain full = full_model(robot);
     const VectorXd errors = VectorXd::Zero(full.parameter_count());
@@ -75,7 +72,7 @@ TEST(DhSection, KeepsThePitchOfASlide) {
         make_dh_text(exported, dh_rows(exported, VectorXd::Zero(exported.parameter_count())));
     EXPECT_NE(text.find("kind: prismatic, pitch_mm: 20"), std::string::npos) << text;
     const std::string sensor = "sensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n";
-    const Chain again = read("name: again\n" + text + sensor).declared_robot;
+    const Chain again = campaign_from("name: again\n" + text + sensor).declared_robot;
     EXPECT_DOUBLE_EQ(again.joint(0).pitch, 0.02);
     EXPECT_LT(compare_flanges(full, errors, again, VectorXd()).position, 1e-12);
 }
@@ -84,20 +81,21 @@ TEST(DhSection, KeepsThePitchOfASlide) {
 TEST(DhSection, ConventionsAgreeOnOneRobot) {
     const std::string limits = ", limits_deg: [-100, 100]}\n";
     const Chain standard =
-        read(campaign_of(
-                 "    - {joint: q1, a_m: 0, alpha_deg: -90, d_m: 0, theta_deg: 0" + limits +
-                 "    - {joint: q2, a_m: 0.4318, alpha_deg: 0, d_m: 0.2435, theta_deg: 0" + limits +
-                 "    - {joint: q3, a_m: -0.0203, alpha_deg: 90, d_m: -0.0934, theta_deg: 0" +
-                 limits))
+        campaign_from(
+            campaign_of(
+                "    - {joint: q1, a_m: 0, alpha_deg: -90, d_m: 0, theta_deg: 0" + limits +
+                "    - {joint: q2, a_m: 0.4318, alpha_deg: 0, d_m: 0.2435, theta_deg: 0" + limits +
+                "    - {joint: q3, a_m: -0.0203, alpha_deg: 90, d_m: -0.0934, theta_deg: 0" +
+                limits))
             .declared_robot;
     const Chain modified =
-        read(campaign_of(
-                 "    - {joint: q1, a_m: 0, alpha_deg: 0, d_m: 0, theta_deg: 0" + limits +
-                     "    - {joint: q2, a_m: 0, alpha_deg: -90, d_m: 0.2435, theta_deg: 0" +
-                     limits +
-                     "    - {joint: q3, a_m: 0.4318, alpha_deg: 0, d_m: -0.0934, theta_deg: 0" +
-                     limits + "    - {a_m: -0.0203, alpha_deg: 90, d_m: 0, theta_deg: 0}\n",
-                 "modified"))
+        campaign_from(
+            campaign_of(
+                "    - {joint: q1, a_m: 0, alpha_deg: 0, d_m: 0, theta_deg: 0" + limits +
+                    "    - {joint: q2, a_m: 0, alpha_deg: -90, d_m: 0.2435, theta_deg: 0" + limits +
+                    "    - {joint: q3, a_m: 0.4318, alpha_deg: 0, d_m: -0.0934, theta_deg: 0" +
+                    limits + "    - {a_m: -0.0203, alpha_deg: 90, d_m: 0, theta_deg: 0}\n",
+                "modified"))
             .declared_robot;
     for (const Vector3d& q : {Vector3d(0, 0, 0), Vector3d(0.5, -1.2, 0.9)}) {
         EXPECT_TRUE(standard.base_from_flange(q, VectorXd())
@@ -109,15 +107,15 @@ TEST(DhSection, MayTurnAboutYOfTheStandardConvention) {
     const std::string rows =
         "    - {joint: q1, a_mm: 300, alpha_deg: 0, d_mm: 0, theta_deg: 0, beta_deg: 30, "
         "limits_deg: [-90, 90]}\n";
-    const Chain robot = read(campaign_of(rows)).declared_robot;
+    const Chain robot = campaign_from(campaign_of(rows)).declared_robot;
     const Isometry3d expected =
         Eigen::Translation3d(0.3, 0, 0) * Eigen::AngleAxisd(30 * degree, Vector3d::UnitY());
     EXPECT_TRUE(robot.base_from_flange(VectorXd::Zero(1), VectorXd()).isApprox(expected, 1e-14));
-    EXPECT_EQ(input_error_of([&] { read(campaign_of(rows, "modified")); }),
+    EXPECT_EQ(input_error_of([&] { campaign_from(campaign_of(rows, "modified")); }),
               "campaign.yaml:6:77: robot.dh.rows[1].beta_deg is stated in a table of the modified "
               "convention; only the standard one has it");
     const std::string other = testing::replaced(rows, "beta_deg: 30", "beta_rad: 0.5");
-    EXPECT_NE(input_error_of([&] { read(campaign_of(other)); }).find("must be one unit"),
+    EXPECT_NE(input_error_of([&] { campaign_from(campaign_of(other)); }).find("must be one unit"),
               std::string::npos);
 }
 
@@ -174,20 +172,23 @@ TEST(DhSection, TellsWhatIsWrongAndWhere) {
         {"  dh:\n    convention: standard\n    rows:\n" + rows_of_a_rail, "",
          "3:3: robot has no key elements, dh or urdf; one of them must be stated"},
     };
-    const auto error = [](const std::string& text) { return input_error_of([&] { read(text); }); };
+    const auto error = [](const std::string& text) {
+        return input_error_of([&] { campaign_from(text); });
+    };
     testing::expect_messages(campaign_of(rows_of_a_rail), slips, error, "campaign.yaml:");
 }
 
 TEST(MakeDhText, IsReadBackAsTheSameRobot) {
     for (const Chain& chain : {testing::fanuc(), testing::scara(), testing::gantry_with_wrist(),
-                               read(campaign_of(rows_of_a_rail)).robot}) {
+                               campaign_from(campaign_of(rows_of_a_rail)).robot}) {
         const Chain complete = complete_model(chain);
         RandomStream stream(9);
         const VectorXd errors = testing::random_vector(stream, complete.parameter_count(), 1e-2);
         const std::string text = make_dh_text(complete, dh_rows(complete, errors));
-        const Chain back = read("name: back\n" + text +
-                                "sensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n")
-                               .declared_robot;
+        const Chain back =
+            campaign_from("name: back\n" + text +
+                          "sensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n")
+                .declared_robot;
         ASSERT_EQ(back.joint_count(), chain.joint_count());
         for (Index j = 0; j < chain.joint_count(); ++j) {
             const auto k = static_cast<std::size_t>(j);
@@ -205,9 +206,10 @@ TEST(MakeDhText, IsReadBackAsTheSameRobot) {
 }
 
 TEST(MakeDhText, PrintsTheShortestNumbersThatAreReadBackExactly) {
-    const Chain chain = read(campaign_of("      - {joint: q1, a_mm: 312.1, alpha_deg: 0, d_mm: 0, "
-                                         "theta_deg: 0, limits_deg: [-150, 75.3]}\n"))
-                            .declared_robot;
+    const Chain chain =
+        campaign_from(campaign_of("      - {joint: q1, a_mm: 312.1, alpha_deg: 0, d_mm: 0, "
+                                  "theta_deg: 0, limits_deg: [-150, 75.3]}\n"))
+            .declared_robot;
     const std::string text = make_dh_text(chain, dh_rows(chain, {}));
     EXPECT_NE(text.find("limits_deg: [-150, 75.3]"), std::string::npos) << text;
     EXPECT_NE(text.find("a_mm: 312.1,"), std::string::npos) << text;

@@ -8,7 +8,7 @@ namespace posewise::io {
 namespace {
 
 /// The error when line 10 of the campaign has this element; columns count from its first letter.
-std::string error_of(const std::string& element) {
+std::string element_error(const std::string& element) {
     const testing::TemporaryFolder folder;
     const auto path = folder.write(
         "c.yaml", testing::replaced(testing::campaign_text, "Tx 312 mm [Tx1]", element));
@@ -23,9 +23,9 @@ std::string error_of(const std::string& element) {
 /// Elements, and what is said of each from its column on; "[...]" stands for any words.
 using Elements = std::vector<std::pair<std::string, std::string>>;
 
-void expect_messages_of(const Elements& elements) {
+void expect_element_messages(const Elements& elements) {
     for (const auto& [element, message] : elements) {
-        const std::string actual = error_of(element);
+        const std::string actual = element_error(element);
         EXPECT_TRUE(testing::is_like(actual, message)) << element << "\n"
                                                        << actual << "\nshould be\n"
                                                        << message;
@@ -34,7 +34,7 @@ void expect_messages_of(const Elements& elements) {
 
 TEST(BadElement, Amounts) {
     const std::string like = "; must be like 'Tx 312 mm [Tx1]' or 'Ry -q2 + 0.5 deg [dq2]'";
-    expect_messages_of({
+    expect_element_messages({
         {"Tw 3 mm", "1: an element begins with Tx, Ty, Tz, Rx, Ry or Rz, not 'Tw'" + like},
         {"Tx", "3: an amount or a joint is missing" + like},
         {"Tx [Tx1]", "4: an amount or a joint is missing[...]"},
@@ -56,7 +56,7 @@ TEST(BadElement, Amounts) {
 }
 
 TEST(BadElement, Joints) {
-    expect_messages_of({
+    expect_element_messages({
         {"Rx 2 q1", "6: a '*' is missing before joint 'q1'; must be like -1.5*q1"},
         {"Rx 0*q1", "4: a joint's coefficient is 0; must not be, leave the joint out"},
         {"Rx q1 + 2*p2", "11: 'p2' is no joint of the robot; did you mean 'q2'?"},
@@ -75,7 +75,7 @@ TEST(BadElement, Parameters) {
     const std::string shape =
         ": an error's function must depend on joints, like sin(q2 + 30 deg), cos(2*q2), q3 or (q3 "
         "- 0.5*q2)";
-    expect_messages_of({
+    expect_element_messages({
         {"Rx 0 [k*sin(30 deg)]", "9" + shape},
         {"Rx 0 [k*(q1 + 30 deg)]", "9" + shape},
         {"Rx 0 [k*sin(3 mm)]",

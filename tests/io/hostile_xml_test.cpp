@@ -13,8 +13,6 @@ namespace {
 using namespace detail;
 using namespace testing;
 
-const std::string& text = lift_urdf;
-
 TEST(HostileXml, IsRefusedWithItsPlace) {
     const std::string base = "<link name=\"base\"/>";
     const std::string tag = "begins a tag that is not XML; must be like <name a=\"1\" b=\"2\">";
@@ -23,9 +21,9 @@ TEST(HostileXml, IsRefusedWithItsPlace) {
     const std::string markup = "is not XML: a '<' must begin a tag or be written &lt;";
     const std::string outside = "is not XML: text outside of the root element";
     expect_messages_of({
-        {text, "", " is not XML: it has no element"},
-        {text, "<!-- only this -->", " is not XML: it has no element"},
-        {text, "no markup at all", "1:1: " + outside},
+        {lift_urdf, "", " is not XML: it has no element"},
+        {lift_urdf, "<!-- only this -->", " is not XML: it has no element"},
+        {lift_urdf, "no markup at all", "1:1: " + outside},
         {"</robot>", "</robot>\n and more", "35:2: " + outside},
         {"</robot>", "", "3:1: is not XML: <robot> is never closed"},
         {"</robot>", "</robot", "34:1: is not XML: an end tag must be </name>"},
@@ -51,7 +49,7 @@ TEST(HostileXml, IsRefusedWithItsPlace) {
         {base, "<xacro:property name=\"a\" value=\"1\"/>",
          "4:3: is a template for xacro; must be what xacro makes of it"},
         {"A robot", std::string("A\0robot", 7), "2:7: has a NUL byte; must be text in UTF-8"},
-        {text, std::string("\xFF\xFE<\0r\0", 6), "1:4: has a NUL byte; must be text in UTF-8"},
+        {lift_urdf, std::string("\xFF\xFE<\0r\0", 6), "1:4: has a NUL byte; must be text in UTF-8"},
         {"xyz=\"0.4 0 0\"", "xyz=\"0.4 0 0\" xyz=\"0 0 0\"",
          "28:5: is not XML: a second attribute 'xyz' in one <origin>; must be one"},
     });
@@ -65,17 +63,17 @@ TEST(ReadUrdf, TakesEveryMarkupThatIsNoElement) {
           "<link name=\"base\" note=\"'>'\"/>", "<link name='base'/><!-- <link> -->",
           "<link name='base'/> text > &amp; &#60; more <?php <a> ?>",
           "<link\n\tname='base'\r\n/>"}) {
-        EXPECT_EQ(error_of(replaced(text, base, by)), "no error") << by;
+        EXPECT_EQ(error_of(replaced(lift_urdf, base, by)), "no error") << by;
     }
-    EXPECT_EQ(error_of("\xEF\xBB\xBF" + text), "no error");
-    EXPECT_EQ(error_of(text + "<!-- end --><?end?>\n"), "no error");
-    EXPECT_EQ(error_of(replaced(text, "?>", " encoding='latin1'?>")), "no error");
+    EXPECT_EQ(error_of("\xEF\xBB\xBF" + lift_urdf), "no error");
+    EXPECT_EQ(error_of(lift_urdf + "<!-- end --><?end?>\n"), "no error");
+    EXPECT_EQ(error_of(replaced(lift_urdf, "?>", " encoding='latin1'?>")), "no error");
 }
 
 TEST(HostileXml, WithANameThatIsNotUtf8BecomesACampaign) {
     const TemporaryFolder folder;
     const std::string path = folder.write(
-        "robot.urdf", replaced(text, "<robot name=\"", "<robot name=\"\xff\x98\x98\x98"));
+        "robot.urdf", replaced(lift_urdf, "<robot name=\"", "<robot name=\"\xff\x98\x98\x98"));
     const UrdfRobot robot = read_urdf({path, "base", "tool"});
     EXPECT_NE(make_campaign_text(robot, folder.path("c.yaml")).find("name: \"\\\\xff\\\\x98"),
               std::string::npos);
@@ -128,7 +126,7 @@ TEST(HostileXml, OfAnyKindIsARobotThatCanBeExportedOrOneLine) {
     Index readable = 0;
     const TemporaryFolder folder;
     for (Index i = 0; i < sweep_count() / 4; ++i) {
-        const UrdfSource source{folder.write("robot.urdf", mutate_bytes(text, stream)), "base",
+        const UrdfSource source{folder.write("robot.urdf", mutate_bytes(lift_urdf, stream)), "base",
                                 "tool"};
         try {
             const Chain robot = complete_model(make_chain(read_urdf(source)));

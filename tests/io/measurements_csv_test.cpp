@@ -35,13 +35,13 @@ const Campaign& crane() {
     return campaign;
 }
 
-Measurements read(const std::string& text) {
+Measurements read_rows(const std::string& text) {
     const TemporaryFolder folder;
     return read_measurements_csv(folder.write("m.csv", text), crane());
 }
 
-std::string error_of(const std::string& text) {
-    return input_error_of([&] { read(text); });
+std::string rows_error(const std::string& text) {
+    return input_error_of([&] { read_rows(text); });
 }
 
 void expect_equal(const Measurements& a, const Measurements& b) {
@@ -53,7 +53,7 @@ void expect_equal(const Measurements& a, const Measurements& b) {
 }
 
 TEST(ReadMeasurementsCsv, GroupsSamplesByConfiguration) {
-    const Measurements measurements = read(good);
+    const Measurements measurements = read_rows(good);
     EXPECT_EQ(measurements.ids, (std::vector<std::string>{"a", "b"}));
     EXPECT_EQ(measurements.first_sample, (std::vector<Index>{0, 2, 3}));
     EXPECT_EQ(measurements.configurations(1, 1), 0.25);
@@ -63,15 +63,15 @@ TEST(ReadMeasurementsCsv, GroupsSamplesByConfiguration) {
 
 TEST(ReadMeasurementsCsv, TakesConfigurationsInTurns) {
     const auto text = good + "a,2,0.1,0.2,0.3,1.25,2,3,4,5,6\n";
-    const Measurements measurements = read(text);
+    const Measurements measurements = read_rows(text);
     EXPECT_EQ(measurements.first_sample, (std::vector<Index>{0, 3, 4}));
     EXPECT_EQ(measurements.observations(2, 0), 1.25);
     EXPECT_EQ(measurements.observations(3, 0), 7);
 }
 
 TEST(ReadMeasurementsCsv, EmptyCellsAreATargetThatWasNotSeen) {
-    EXPECT_TRUE(read(good).is_seen.all());
-    const Measurements measurements = read(replaced(
+    EXPECT_TRUE(read_rows(good).is_seen.all());
+    const Measurements measurements = read_rows(replaced(
         replaced(good, "a,1,0.1,0.2,0.3,1.5,2,3,", "a,1,0.1,0.2,0.3,, ,\"\","), "10,11,12", ",,"));
     EXPECT_TRUE((measurements.is_seen == Seen{{true, true}, {false, true}, {true, false}}).all());
     EXPECT_EQ(measurements.observations.row(1).tail(3), Eigen::RowVector3d(4, 5, 6));
@@ -84,19 +84,19 @@ TEST(ReadMeasurementsCsv, EmptyCellsAreATargetThatWasNotSeen) {
 
 TEST(ReadMeasurementsCsv, CellsOfNanAreATargetThatWasNotSeen) {
     for (const std::string nan : {"nan", "NaN", "NAN"}) {
-        expect_equal(read(replaced(good, "10,11,12", nan + ',' + nan + ',' + nan)),
-                     read(replaced(good, "10,11,12", ",,")));
+        expect_equal(read_rows(replaced(good, "10,11,12", nan + ',' + nan + ',' + nan)),
+                     read_rows(replaced(good, "10,11,12", ",,")));
     }
 }
 
 TEST(ReadMeasurementsCsv, TheRobotMayComeBackToAPose) {
-    const Measurements measurements = read(replaced(good, "0.25", "0.2"));
+    const Measurements measurements = read_rows(replaced(good, "0.25", "0.2"));
     EXPECT_EQ(measurements.ids, (std::vector<std::string>{"a", "b"}));
     EXPECT_EQ(measurements.configurations.row(0), measurements.configurations.row(1));
 }
 
 TEST(ReadMeasurementsCsv, RadiansALittleBeyondTheLimitsAreRadians) {
-    EXPECT_EQ(read(replaced(good, "b,0,0.1", "b,0,12.5")).configurations(1, 0), 12.5);
+    EXPECT_EQ(read_rows(replaced(good, "b,0,0.1", "b,0,12.5")).configurations(1, 0), 12.5);
 }
 
 TEST(ReadMeasurementsCsv, DoesNotMindWhichTargetsWerePlannedToBeVisible) {
@@ -104,15 +104,15 @@ TEST(ReadMeasurementsCsv, DoesNotMindWhichTargetsWerePlannedToBeVisible) {
     for (const char* row : {"\na,0", "\na,1", "\nb,0"}) {
         text = replaced(text, row, "\n1 2," + std::string(row + 1));
     }
-    expect_equal(read(text), read(good));
-    expect_equal(read(replaced(text, "1 2,b", "2,b")), read(good));
+    expect_equal(read_rows(text), read_rows(good));
+    expect_equal(read_rows(replaced(text, "1 2,b", "2,b")), read_rows(good));
 }
 
 TEST(ReadMeasurementsCsv, ConvertsDegreesAndMillimetres) {
     const auto text =
         "lift_mm,config,q2_deg,q1_mrad,p2_z_mm,p1_x_um,p1_y_m,p1_z_m,p2_x_m,p2_y_m\n"
         "312,a,90,100,1.5,2,0,0,0,0\n";
-    const Measurements measurements = read(text);
+    const Measurements measurements = read_rows(text);
     EXPECT_EQ(measurements.configurations(0, 0), 0.1);
     EXPECT_DOUBLE_EQ(measurements.configurations(0, 1), std::numbers::pi / 2);
     EXPECT_EQ(measurements.configurations(0, 2), 0.312);
@@ -121,25 +121,25 @@ TEST(ReadMeasurementsCsv, ConvertsDegreesAndMillimetres) {
 }
 
 TEST(ReadMeasurementsCsv, DoesNotMindHowTheFileWasSaved) {
-    const Measurements plain = read(good);
+    const Measurements plain = read_rows(good);
     const auto with = [](char from, const std::string& to) {
         std::string text;
         for (const char c : good) text += c == from ? to : std::string(1, c);
         return text;
     };
-    expect_equal(read("\xEF\xBB\xBF" + good), plain);
-    expect_equal(read(with('\n', "\r\n")), plain);
-    expect_equal(read(with(',', ";")), plain);
-    expect_equal(read(with(',', "\t")), plain);
-    expect_equal(read(with(',', " , ")), plain);
-    expect_equal(read("# made by hand\n\n# more, of it\n" + with('\n', "\n\n")), plain);
-    expect_equal(read(good.substr(0, good.size() - 1)), plain);
-    expect_equal(read(replaced(replaced(good, "config", "\"config\""), "b,0", "\"b\",\"0\"")),
+    expect_equal(read_rows("\xEF\xBB\xBF" + good), plain);
+    expect_equal(read_rows(with('\n', "\r\n")), plain);
+    expect_equal(read_rows(with(',', ";")), plain);
+    expect_equal(read_rows(with(',', "\t")), plain);
+    expect_equal(read_rows(with(',', " , ")), plain);
+    expect_equal(read_rows("# made by hand\n\n# more, of it\n" + with('\n', "\n\n")), plain);
+    expect_equal(read_rows(good.substr(0, good.size() - 1)), plain);
+    expect_equal(read_rows(replaced(replaced(good, "config", "\"config\""), "b,0", "\"b\",\"0\"")),
                  plain);
 }
 
 TEST(ReadMeasurementsCsv, DoubledQuotationMarksInQuotesAreOne) {
-    const Measurements measurements = read(replaced(good, "b,0", "\"b \"\"2\"\"\" ,\"0\""));
+    const Measurements measurements = read_rows(replaced(good, "b,0", "\"b \"\"2\"\"\" ,\"0\""));
     EXPECT_EQ(measurements.ids, (std::vector<std::string>{"a", "b \"2\""}));
     EXPECT_EQ(measurements.configurations(1, 1), 0.25);
 }
@@ -158,7 +158,7 @@ TEST(ReadMeasurementsCsv, IsFastEnoughForAHundredThousandRows) {
 }
 
 TEST(WriteMeasurementsCsv, IsReadBackExactly) {
-    Measurements measurements = read(good);
+    Measurements measurements = read_rows(good);
     measurements.ids = {"a \"1\", \"left\"", "#2"};
     measurements.configurations(0, 0) = 1.0 / 3;
     measurements.observations(0, 3) = 0.1 + 0.2;
@@ -172,7 +172,7 @@ TEST(WriteMeasurementsCsv, IsReadBackExactly) {
 }
 
 TEST(WriteMeasurementsCsv, LeavesTargetsThatWereNotSeenEmpty) {
-    Measurements measurements = read(good);
+    Measurements measurements = read_rows(good);
     measurements.is_seen(1, 0) = measurements.is_seen(2, 1) = false;
     measurements.observations.row(1).head(3).setConstant(std::nan(""));
     const TemporaryFolder folder;
@@ -188,12 +188,12 @@ TEST(WriteMeasurementsCsv, LeavesTargetsThatWereNotSeenEmpty) {
 
 TEST(WriteMeasurementsCsv, KeepsACommentInItsLine) {
     const TemporaryFolder folder;
-    write_measurements_csv(folder.path("m.csv"), crane(), read(good), {"two\nlines"});
-    EXPECT_EQ(read_measurements_csv(folder.path("m.csv"), crane()).ids, read(good).ids);
+    write_measurements_csv(folder.path("m.csv"), crane(), read_rows(good), {"two\nlines"});
+    EXPECT_EQ(read_measurements_csv(folder.path("m.csv"), crane()).ids, read_rows(good).ids);
 }
 
 TEST(WriteMeasurementsCsv, RefusesNumbersThatAreNotFinite) {
-    Measurements measurements = read(good);
+    Measurements measurements = read_rows(good);
     measurements.observations(0, 0) = std::numeric_limits<double>::infinity();
     const TemporaryFolder folder;
     const std::string message = input_error_of(
@@ -208,12 +208,12 @@ TEST(BadMeasurementsCsv, MissingFile) {
               "m.csv: cannot be read: No such file or directory");
 }
 
-void expect_messages_of(const std::vector<testing::Slip>& slips) {
-    testing::expect_messages(good, slips, error_of, "m.csv:");
+void expect_rows_messages(const std::vector<testing::Slip>& slips) {
+    testing::expect_messages(good, slips, rows_error, "m.csv:");
 }
 
 TEST(BadMeasurementsCsv, Headers) {
-    expect_messages_of({
+    expect_rows_messages({
         {good, "", " is empty; must begin with a header like config,sample,q1_rad,...,p1_x_mm,..."},
         {good, "# only a comment\n", " is empty;[...]"},
         {good, good.substr(0, good.find('\n') + 1),
@@ -247,13 +247,13 @@ TEST(ReadMeasurementsCsv, PassesOverColumnsThatNobodyAskedFor) {
     const MeasurementsFile file = read_measurements_csv(folder.write("m.csv", text), crane());
     EXPECT_EQ(file.unused_columns,
               (std::vector<std::string>{"clock", "operator", "p1_rms_mm", ""}));
-    expect_equal(file, read(good));
+    expect_equal(file, read_rows(good));
     EXPECT_TRUE(read_measurements_csv(folder.write("m.csv", good), crane()).unused_columns.empty());
 }
 
 /// Nor is one passed over that was meant for something else.
 TEST(BadMeasurementsCsv, Misspelt) {
-    expect_messages_of({
+    expect_rows_messages({
         {"sample", "sampel", "1:8: column 'sampel' is unknown; did you mean 'sample'?"},
         {"config", "pose",
          "1:75: missing column config; the header must have [...]p2_z_mm, and does "
@@ -280,7 +280,7 @@ TEST(BadMeasurementsCsv, Numbers) {
     const std::string some =
         " is empty, but not all cells of target 1 are; must be a number, or all empty if it was "
         "not seen";
-    expect_messages_of({
+    expect_rows_messages({
         {"1.5", "1.5mm", "3:17: '1.5mm' is not a number" + rule},
         {"0.25", "", "4:9: '' is not a number" + rule},
         {"1.5", "", "3:17: p1_x" + some},
@@ -301,7 +301,7 @@ TEST(BadMeasurementsCsv, Numbers) {
 }
 
 TEST(BadMeasurementsCsv, Rows) {
-    expect_messages_of({
+    expect_rows_messages({
         {"b,0,0.1,0.25,0.3,7,8,9,10,11,12",
          "b,0,0.1,0.2,0.3,1,2,3,4,5,6\nb,1,0.1,0.2,0.3,1.5,2,3,4,5,6",
          "4:5: configuration 'b' has the same joint values and readings as 'a' (line 2), and 1 of "
@@ -327,7 +327,7 @@ TEST(BadMeasurementsCsv, Rows) {
         {"b,0", "b\xED\xA0\x80,0", "4:2: is not UTF-8 text here; must be UTF-8 (or plain ASCII)"},
         {good, "config,sample\ra,0\r", " has line ends of CR only; must be of LF or CR LF"},
     });
-    EXPECT_EQ(error_of(replaced(good, "a,1,0.1,0.2,", "a,1,0.1,0.2000005,")), "no error");
+    EXPECT_EQ(rows_error(replaced(good, "a,1,0.1,0.2,", "a,1,0.1,0.2000005,")), "no error");
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ using testing::input_error_of;
 using testing::replaced;
 using testing::TemporaryFolder;
 
-const CampaignFile& crane() {
+const CampaignFile& crane_file() {
     static const CampaignFile file = [] {
         const TemporaryFolder folder;
         return read_campaign(folder.write("c.yaml", testing::campaign_text));
@@ -40,8 +40,8 @@ PlannedPose pose(const std::string& id, double q1, double q2, double lift) {
 /// verify with.
 Plan planned() {
     Plan plan;
-    plan.campaign = crane().name;
-    plan.columns = configuration_columns(crane());
+    plan.campaign = crane_file().name;
+    plan.columns = configuration_columns(crane_file());
     plan.poses = {pose("p1", 0.1, 0.2, 0.3), pose("p2", 0.4, 0.5, 0.1), pose("p3", -0.3, 0.7, 0.2)};
     plan.poses[1].targets = {1};
     plan.verification = {pose("v1", 0.6, -0.2, 0.4)};
@@ -66,10 +66,10 @@ std::string list_of(const std::vector<std::size_t>& order, const Row& row) {
 const std::vector<std::size_t> in_order{0, 1, 2, 3, 4, 5, 6};
 const std::vector<std::size_t> shuffled{5, 2, 0, 6, 3, 1, 4};
 
-MeasurementsFile read(const std::string& text, const std::string& unit = "mm",
-                      const Plan& plan = planned()) {
+MeasurementsFile read_points(const std::string& text, const std::string& unit = "mm",
+                             const Plan& plan = planned()) {
     const TemporaryFolder folder;
-    return read_measurements(folder.write("p.txt", text), crane(), {&plan, "plan.json", unit});
+    return read_measurements(folder.write("p.txt", text), crane_file(), {&plan, "plan.json", unit});
 }
 
 /// As a table has them.
@@ -83,10 +83,10 @@ MeasurementsFile all_points() {
             "\np3,-0.3,0.7,0.2" + cells(3) + cells(4) + "\nv1,0.6,-0.2,0.4" + cells(5) + cells(6) +
             '\n';
     const TemporaryFolder folder;
-    return read_measurements(folder.write("m.csv", text), crane());
+    return read_measurements(folder.write("m.csv", text), crane_file());
 }
 
-void expect_equal(const Measurements& a, const Measurements& b) {
+void expect_same_points(const Measurements& a, const Measurements& b) {
     EXPECT_EQ(a.ids, b.ids);
     EXPECT_EQ(a.first_sample, b.first_sample);
     EXPECT_EQ(a.configurations, b.configurations);
@@ -140,19 +140,19 @@ TEST(PlannedPoints, EveryFormatInAnyOrderIsWhatATableHas) {
     for (const std::string& text : lists) {
         SCOPED_TRACE(text);
         const bool is_in_m = text.find("x_m,") != std::string::npos;
-        const MeasurementsFile read_here = read(text, is_in_m ? "" : "mm");
-        expect_equal(read_here, expected);
+        const MeasurementsFile read_here = read_points(text, is_in_m ? "" : "mm");
+        expect_same_points(read_here, expected);
         EXPECT_TRUE(read_here.is_joined);
     }
-    EXPECT_EQ(read(lists[0]).joined, "");
-    EXPECT_EQ(read(lists[8]).joined,
+    EXPECT_EQ(read_points(lists[0]).joined, "");
+    EXPECT_EQ(read_points(lists[8]).joined,
               "no name is one of the plan's, so they are taken in its order: 4 of 4 poses");
-    EXPECT_EQ(read(lists[11]).unused_columns, std::vector<std::string>{"note"});
+    EXPECT_EQ(read_points(lists[11]).unused_columns, std::vector<std::string>{"note"});
 }
 
 TEST(PlannedPoints, WithoutThoseThatAreMissing) {
     const std::string text = "P001_T2 1 2 3\nV001_T1 4 5 6\nP002_T1 7 8 9\n";
-    const MeasurementsFile some = read(text);
+    const MeasurementsFile some = read_points(text);
     EXPECT_EQ(some.ids, (std::vector<std::string>{"p1", "p2", "v1"}));
     EXPECT_TRUE((some.is_seen == Seen{{false, true}, {true, false}, {true, false}}).all());
     EXPECT_EQ(some.configurations.row(2), planned().verification[0].configuration.transpose());
@@ -162,7 +162,7 @@ TEST(PlannedPoints, WithoutThoseThatAreMissing) {
 }
 
 TEST(PlannedPoints, InOrderWithoutThoseToVerify) {
-    const MeasurementsFile some = read("1 2 3\n4 5 6\n7 8 9\n10 11 12\n13 14 15\n");
+    const MeasurementsFile some = read_points("1 2 3\n4 5 6\n7 8 9\n10 11 12\n13 14 15\n");
     EXPECT_EQ(some.ids, (std::vector<std::string>{"p1", "p2", "p3"}));
     EXPECT_TRUE((some.is_seen == Seen{{true, true}, {false, true}, {true, true}}).all());
     EXPECT_EQ(some.joined,
@@ -174,7 +174,7 @@ TEST(PlannedPoints, NamesMayBeWrittenInManyWays) {
     for (const std::string name : {"P001_T2", "p1_t2", "P1T2", "p01-t02", "A::B::P0001.T2",
                                    "::P1_T2", "P_1_T_2", "p1_t2*"}) {
         SCOPED_TRACE(name);
-        const MeasurementsFile one = read(name + " 1 2 3\n");
+        const MeasurementsFile one = read_points(name + " 1 2 3\n");
         EXPECT_EQ(one.ids, std::vector<std::string>{"p1"});
         EXPECT_TRUE((one.is_seen == Seen{{false, true}}).all());
     }
@@ -205,7 +205,7 @@ TEST(PlannedPoints, APoseAloneWhereThereIsOneTarget) {
     EXPECT_EQ(some.ids, (std::vector<std::string>{"p1", "p2", "17"}));
     EXPECT_EQ(some.observations(2, 0), 0.004);
     EXPECT_EQ(read_one("P017 4 5 6\n").ids, std::vector<std::string>{"17"});
-    EXPECT_EQ(input_error_of([&] { read("P001 1 2 3\nP001_T1 1 2 3\n"); }),
+    EXPECT_EQ(input_error_of([&] { read_points("P001 1 2 3\nP001_T1 1 2 3\n"); }),
               "p.txt:1:1: 'P001' is no point of the plan; must be one, such as P001_T1, or be left "
               "out");
 }
@@ -228,7 +228,7 @@ TEST(PlannedPoints, NamesOfDifferentIdsDiffer) {
                 detail::target_name(one.id, 1) + ' ' + fmt::format("{} 1 2", text.size()) + '\n';
         }
         const auto read_all = [&] {
-            const MeasurementsFile some = read(text, "mm", plan);
+            const MeasurementsFile some = read_points(text, "mm", plan);
             for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(some.ids[i], plan.poses[i].id) << text;
         };
         const std::string message = input_error_of(read_all);
@@ -243,7 +243,7 @@ TEST(PlannedPoints, NamesOfDifferentIdsDiffer) {
 TEST(BadPoints, EachIsNamedInOneLine) {
     const std::string good = "A::B::P001_T1 1 2 3\nA::B::P002_T2 4 5 6\nA::B::V001_T1 7 8 9\n";
     const auto error_of = [](const std::string& text) {
-        return input_error_of([&] { read(text); });
+        return input_error_of([&] { read_points(text); });
     };
     ASSERT_EQ(error_of(good), "no error");
     testing::expect_messages(
@@ -313,19 +313,19 @@ TEST(BadPoints, WithoutAUnitTheOneThatFitsIsNamed) {
         std::string text;
         for (const PlannedPose& one : plan.poses) {
             const Isometry3d flange =
-                world_from_flange(crane(), crane().nominal, one.configuration);
-            const Vector3d x =
-                factor * (flange * crane().sensor->target_position(0, crane().nominal.sensor));
+                world_from_flange(crane_file(), crane_file().nominal, one.configuration);
+            const Vector3d x = factor * (flange * crane_file().sensor->target_position(
+                                                      0, crane_file().nominal.sensor));
             text += fmt::format("{}_T1 {} {} {}\n", one.id, x.x(), x.y(), x.z());
         }
         EXPECT_EQ(
-            input_error_of([&] { read(text, ""); }),
+            input_error_of([&] { read_points(text, ""); }),
             fmt::format("p.txt: does not state the unit of its points; state `points_unit`, or "
                         "x_mm, y_mm, z_mm in a header; they are as far apart as planned if it "
                         "is {}",
                         unit));
     }
-    EXPECT_EQ(input_error_of([&] { read("P001_T1 1 2 3\nP002_T1 2 3 4\n", ""); }),
+    EXPECT_EQ(input_error_of([&] { read_points("P001_T1 1 2 3\nP002_T1 2 3 4\n", ""); }),
               "p.txt: does not state the unit of its points; state `points_unit`, or x_mm, y_mm, "
               "z_mm in a header");
 }
@@ -334,17 +334,17 @@ TEST(BadPoints, ThoseOfAnotherRobotOrWithoutAPlan) {
     const TemporaryFolder folder;
     const std::string path = folder.write("p.txt", "P001_T1 1 2 3\n");
     EXPECT_EQ(
-        input_error_of([&] { read_measurements(path, crane()); }),
+        input_error_of([&] { read_measurements(path, crane_file()); }),
         "p.txt: is a list of points without joint values; must come with the plan whose poses "
         "were measured (`plan` of calibrate, indices, inspect and study), or be a table with "
         "the column config");
     Plan other = planned();
     other.campaign = "another";
-    EXPECT_EQ(input_error_of([&] { read("P001_T1 1 2 3\n", "mm", other); }),
+    EXPECT_EQ(input_error_of([&] { read_points("P001_T1 1 2 3\n", "mm", other); }),
               "plan.json: campaign: is 'another'; must be a plan of 'crane'");
     other = planned();
     other.poses[1].id = "P01";
-    EXPECT_EQ(input_error_of([&] { read("P001_T1 1 2 3\n", "mm", other); }),
+    EXPECT_EQ(input_error_of([&] { read_points("P001_T1 1 2 3\n", "mm", other); }),
               "plan.json: its poses 'p1' and 'P01' have the same name for an instrument, P001_T1; "
               "must differ");
 }
@@ -355,16 +355,16 @@ TEST(PlanTable, IsAPlanOfItsConfigurations) {
         "config,q1_deg,q2_rad,lift_mm,visible_targets,purpose,way\n"
         "p1,10,0.2,300,1 2,calibrate,straight\np2.via,0,0,0,,via,straight\n"
         "p2,20,0.5,100,2,calibrate,BLOCKED\nv1,30,0.1,0,1,verify,straight\n";
-    const Plan plan = read_plan(folder.write("p.csv", text), crane());
+    const Plan plan = read_plan(folder.write("p.csv", text), crane_file());
     ASSERT_EQ(plan.poses.size(), 2U);
     EXPECT_EQ(plan.poses[1].id, "p2");
     EXPECT_EQ(plan.poses[1].targets, std::vector<Index>{1});
     ASSERT_EQ(plan.verification.size(), 1U);
     EXPECT_EQ(plan.verification[0].configuration[0], to_radians(30));
     EXPECT_EQ(plan.request.pose_count, 2);
-    EXPECT_EQ(describe_mismatch(plan, crane()), "");
+    EXPECT_EQ(describe_mismatch(plan, crane_file()), "");
     const std::string twice = folder.write("t.csv", replaced(text, "v1", "p1"));
-    EXPECT_EQ(input_error_of([&] { read_plan(twice, crane()); }),
+    EXPECT_EQ(input_error_of([&] { read_plan(twice, crane_file()); }),
               "t.csv: has the configuration 'p1' twice; as a plan it must have each once");
 }
 
@@ -372,15 +372,15 @@ TEST(TargetsFile, IsWhereTheNominalRobotHoldsEachTarget) {
     const TemporaryFolder folder;
     const std::string path = folder.path("t.csv");
     const Plan plan = planned();
-    write_targets(path, crane(), plan);
-    const MeasurementsFile read_back = read_measurements(path, crane(), {&plan, "plan.json"});
+    write_targets(path, crane_file(), plan);
+    const MeasurementsFile read_back = read_measurements(path, crane_file(), {&plan, "plan.json"});
     EXPECT_EQ(read_back.unused_columns, std::vector<std::string>());
     EXPECT_EQ(read_back.ids, (std::vector<std::string>{"p1", "p2", "p3", "v1"}));
     for (Index i = 0; i < 4; ++i) {
-        const VectorXd expected =
-            crane().sensor->predict(world_from_flange(crane(), crane().nominal,
-                                                      read_back.configurations.row(i).transpose()),
-                                    crane().nominal.sensor);
+        const VectorXd expected = crane_file().sensor->predict(
+            world_from_flange(crane_file(), crane_file().nominal,
+                              read_back.configurations.row(i).transpose()),
+            crane_file().nominal.sensor);
         EXPECT_LT((read_back.observations.row(i).transpose() - expected).cwiseAbs().maxCoeff(),
                   5.1e-8);
     }
@@ -390,14 +390,14 @@ TEST(TargetsFile, IsAListOfWhatIsVisibleWhereItEndsInTxt) {
     const TemporaryFolder folder;
     const Plan plan = planned();
     const std::string path = folder.path("t.txt");
-    write_targets(path, crane(), plan);
+    write_targets(path, crane_file(), plan);
     const std::string text = detail::read_file(path);
     EXPECT_TRUE(text.starts_with("// name, x, y, z in mm\nP001_T1,")) << text;
     EXPECT_EQ(text.find("P002_T1"), std::string::npos) << text;
-    const MeasurementsFile read_back = read(text);
+    const MeasurementsFile read_back = read_points(text);
     EXPECT_EQ(read_back.joined, "");
-    write_targets(folder.path("t.csv"), crane(), plan);
-    const MeasurementsFile table = read(detail::read_file(folder.path("t.csv")));
+    write_targets(folder.path("t.csv"), crane_file(), plan);
+    const MeasurementsFile table = read_points(detail::read_file(folder.path("t.csv")));
     EXPECT_EQ(read_back.observations.row(0), table.observations.row(0));
 }
 
@@ -405,7 +405,7 @@ TEST(TargetsFile, HasEachNameOnce) {
     const TemporaryFolder folder;
     Plan plan = planned();
     plan.poses[1].id = "P-01";
-    EXPECT_EQ(input_error_of([&] { write_targets(folder.path("t.csv"), crane(), plan); }),
+    EXPECT_EQ(input_error_of([&] { write_targets(folder.path("t.csv"), crane_file(), plan); }),
               "t.csv: is not written: the plan's poses 'p1' and 'P-01' have the same name for an "
               "instrument, P-001_T1; must differ by more than capitals, separators and leading "
               "zeros");
@@ -414,7 +414,7 @@ TEST(TargetsFile, HasEachNameOnce) {
 
 TEST(TargetsFile, TellsRangeAnglesAndSight) {
     const TemporaryFolder folder;
-    CampaignFile file = crane();
+    CampaignFile file = crane_file();
     file.cell.sight = Sight{};
     file.cell.sight->normals = {Vector3d::UnitX(), -Vector3d::UnitZ()};
     Plan plan = planned();

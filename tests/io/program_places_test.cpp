@@ -16,8 +16,8 @@ namespace {
 
 using namespace testing;
 
-constexpr ProgramFormat target_formats[] = {ProgramFormat::Fanuc, ProgramFormat::Kuka,
-                                            ProgramFormat::Abb, ProgramFormat::Ur};
+constexpr ProgramFormat place_formats[] = {ProgramFormat::Fanuc, ProgramFormat::Kuka,
+                                           ProgramFormat::Abb, ProgramFormat::Ur};
 
 VectorXd no_errors(const Chain& robot) { return VectorXd::Zero(robot.parameter_count()); }
 
@@ -150,7 +150,7 @@ struct Cell {
 };
 
 TEST(ProgramPlaces, BringARobotThatBendsWhereTheyAre) {
-    for (const ProgramFormat format : target_formats) {
+    for (const ProgramFormat format : place_formats) {
         const Cell cell(format);
         const Chain& robot = cell.campaign.robot;
         const TargetProgram program = cell.read();
@@ -199,7 +199,7 @@ TEST(ProgramPlaces, BringARobotThatBendsWhereTheyAre) {
 }
 
 TEST(ProgramPlaces, AreLeftUnlessTheyAreAskedFor) {
-    for (const ProgramFormat format : target_formats) {
+    for (const ProgramFormat format : place_formats) {
         const Cell cell(format);
         EXPECT_NE(input_error_of([&] {
                       read_program_targets(cell.path, format, cell.campaign.controller);

@@ -43,33 +43,36 @@ const std::string planes =
     "  planes: [{normal: [0, 0, 2], offset_mm: 300}, {normal: [1, 0, 0], offset_mm: 900}]\n"
     "  targets: {position_mm: [[0, 0, 150]], known: true}\n";
 
-CampaignFile read(const std::string& sensor) { return parse_campaign(head + sensor, "c.yaml"); }
+CampaignFile with_sensor(const std::string& sensor) {
+    return parse_campaign(head + sensor, "c.yaml");
+}
 
 Measurements read_csv(const std::string& sensor, const std::string& text) {
     const TemporaryFolder folder;
-    return read_measurements_csv(folder.write("m.csv", text), read(sensor));
+    return read_measurements_csv(folder.write("m.csv", text), with_sensor(sensor));
 }
 
 TEST(ReadSensor, KnowsHowLargeTheBallsAtTargetsAre) {
     const std::string points =
         "sensor: {kind: points, sigma_mm: 0.1, targets: {position_mm: [[0, 0, 50]]}}\n";
-    EXPECT_EQ(read(points).sensor->target_radius(), 0.01905);
+    EXPECT_EQ(with_sensor(points).sensor->target_radius(), 0.01905);
     const auto stated = [&](const std::string& radius) {
         return replaced(points, "50]]", "50]], radius_mm: " + radius);
     };
-    EXPECT_EQ(read(stated("6.35")).sensor->target_radius(), 0.00635);
-    EXPECT_EQ(read(stated("0")).sensor->target_radius(), 0);
-    EXPECT_EQ(read(distances).sensor->target_radius(), 0.01905);
-    EXPECT_FALSE(read(poses).sensor->target_radius());
-    EXPECT_FALSE(read(planes).sensor->target_radius()) << "a tip that is to touch is no body";
-    EXPECT_NE(input_error_of([&] { read(stated("-1")); }).find("radius_mm is '-1'"),
+    EXPECT_EQ(with_sensor(stated("6.35")).sensor->target_radius(), 0.00635);
+    EXPECT_EQ(with_sensor(stated("0")).sensor->target_radius(), 0);
+    EXPECT_EQ(with_sensor(distances).sensor->target_radius(), 0.01905);
+    EXPECT_FALSE(with_sensor(poses).sensor->target_radius());
+    EXPECT_FALSE(with_sensor(planes).sensor->target_radius())
+        << "a tip that is to touch is no body";
+    EXPECT_NE(input_error_of([&] { with_sensor(stated("-1")); }).find("radius_mm is '-1'"),
               std::string::npos);
-    EXPECT_NE(input_error_of([&] { read(stated("2000")); }).find("radius_mm is '2000'"),
+    EXPECT_NE(input_error_of([&] { with_sensor(stated("2000")); }).find("radius_mm is '2000'"),
               std::string::npos);
 }
 
 TEST(ReadSensor, TakesPosesWithTheirTool) {
-    const Campaign campaign = read(poses);
+    const Campaign campaign = with_sensor(poses);
     const auto& sensor = dynamic_cast<const PoseSensor&>(*campaign.sensor);
     EXPECT_DOUBLE_EQ(sensor.sigma_orientation(), 2e-4);
     EXPECT_DOUBLE_EQ(campaign.model_error_orientation, 3e-4);
@@ -78,12 +81,13 @@ TEST(ReadSensor, TakesPosesWithTheirTool) {
     EXPECT_NEAR(campaign.nominal.sensor[5], std::numbers::pi, 1e-15);
     EXPECT_TRUE(campaign.has_nominal_targets);
     const std::string fixed = replaced(poses, "180]}", "180], known: true}");
-    EXPECT_EQ(read(fixed).nominal.sensor.size(), 0);
+    EXPECT_EQ(with_sensor(fixed).nominal.sensor.size(), 0);
 }
 
 TEST(ReadSensor, TakesWhatACameraRecordsAndWhereItSits) {
     const auto record = [](const std::string& keys) {
-        const Campaign campaign = read(replaced(poses, "kind: poses", "kind: poses\n  " + keys));
+        const Campaign campaign =
+            with_sensor(replaced(poses, "kind: poses", "kind: poses\n  " + keys));
         return dynamic_cast<const PoseSensor&>(*campaign.sensor).record();
     };
     EXPECT_TRUE(record("camera: flange").is_inverse);
@@ -101,8 +105,9 @@ TEST(ReadSensor, TakesWhatACameraRecordsAndWhereItSits) {
 }
 
 TEST(CameraPoses, AreReadAndWrittenAsTheyWereRecorded) {
-    const Campaign body = read(poses);
-    const Campaign camera = read(replaced(poses, "kind: poses", "kind: poses\n  camera: flange"));
+    const Campaign body = with_sensor(poses);
+    const Campaign camera =
+        with_sensor(replaced(poses, "kind: poses", "kind: poses\n  camera: flange"));
     const Measurements observed = simulate(body, {.pose_count = 5}).measurements;
     const TemporaryFolder folder;
     const auto written = folder.path("seen.csv");
@@ -116,7 +121,7 @@ TEST(CameraPoses, AreReadAndWrittenAsTheyWereRecorded) {
 }
 
 TEST(ReadSensor, TakesWhatIsKnownOfTheBase) {
-    const Campaign campaign = read(poses);
+    const Campaign campaign = with_sensor(poses);
     EXPECT_EQ(base_parameter_count(campaign), 4);
     const auto names = parameter_names(campaign);
     EXPECT_EQ(std::vector<std::string>(names.begin(), names.begin() + 4),
@@ -124,14 +129,14 @@ TEST(ReadSensor, TakesWhatIsKnownOfTheBase) {
 }
 
 TEST(ReadSensor, TakesDistancesAndPartlyKnownTargets) {
-    const Campaign campaign = read(distances);
+    const Campaign campaign = with_sensor(distances);
     EXPECT_EQ(campaign.sensor->observation_names(), (std::vector<std::string>{"p1_a1", "p1_a2"}));
     EXPECT_EQ(campaign.sensor->unknown_names().front(), "target1.z");
     VectorXd expected(7);
     expected << 0.05, 1, 2, 0, -0.5, 0.8, 0.3;
     EXPECT_TRUE(campaign.nominal.sensor.isApprox(expected, 1e-15));
     const std::string fixed = replaced(distances, "300]]}", "300]], known: true}");
-    EXPECT_EQ(read(fixed).nominal.sensor.size(), 1);
+    EXPECT_EQ(with_sensor(fixed).nominal.sensor.size(), 1);
 }
 
 TEST(ReadSensor, TakesSockets) {
@@ -159,7 +164,8 @@ TEST(ReadSensor, TakesSockets) {
         return input_error_of(
             [&] { parse_campaign(without_base + replaced(sockets, part, by), "c.yaml"); });
     };
-    EXPECT_NE(input_error_of([&] { read(sockets); }).find("must be left out"), std::string::npos);
+    EXPECT_NE(input_error_of([&] { with_sensor(sockets); }).find("must be left out"),
+              std::string::npos);
     for (const auto& [part, by, said] : std::vector<std::array<std::string, 3>>{
              {"from: left", "from: right", "must be a socket listed before this one"},
              {"name: right", "name: left", "must be its own"},
@@ -181,9 +187,9 @@ TEST(ReadSensor, TakesSockets) {
     const std::string known =
         replaced(replaced(sockets, "kind: sockets", "kind: sockets\n  known_sockets: true"),
                  "distance_mm: 50", distance("100.9"));
-    EXPECT_EQ(input_error_of([&] { read(known); }), "no error");
+    EXPECT_EQ(input_error_of([&] { with_sensor(known); }), "no error");
     EXPECT_NE(input_error_of([&] {
-                  read(replaced(known, "100.9", "102"));
+                  with_sensor(replaced(known, "100.9", "102"));
               }).find("must agree within 1 mm"),
               std::string::npos);
     EXPECT_EQ(input_error_of([&] { parse_campaign(without_base + known, "c.yaml"); }),
@@ -192,20 +198,21 @@ TEST(ReadSensor, TakesSockets) {
 }
 
 TEST(ReadSensor, TakesPlanes) {
-    const Campaign campaign = read(planes);
+    const Campaign campaign = with_sensor(planes);
     EXPECT_EQ(campaign.sensor->unknown_names(),
               (std::vector<std::string>{"plane1.tilt1", "plane1.tilt2", "plane1.offset",
                                         "plane2.tilt1", "plane2.tilt2", "plane2.offset"}));
     EXPECT_DOUBLE_EQ(campaign.nominal.sensor[2], 0.3);
     const std::string fixed = replaced(planes, "  targets", "  known_planes: true\n  targets");
-    EXPECT_EQ(read(fixed).nominal.sensor.size(), 0);
+    EXPECT_EQ(with_sensor(fixed).nominal.sensor.size(), 0);
 }
 
 TEST(ReadSensor, TakesWhatIsKnownOfEachPlane) {
     const auto names = [](const std::string& first, const std::string& second, bool all = false) {
         std::string text = replaced(planes, "offset_mm: 300", "offset_mm: 300" + first);
         text = replaced(text, "offset_mm: 900", "offset_mm: 900" + second);
-        return read(all ? replaced(text, "  targets", "  known_planes: true\n  targets") : text)
+        return with_sensor(all ? replaced(text, "  targets", "  known_planes: true\n  targets")
+                               : text)
             .sensor->unknown_names();
     };
     using Names = std::vector<std::string>;
@@ -217,14 +224,14 @@ TEST(ReadSensor, TakesWhatIsKnownOfEachPlane) {
     EXPECT_EQ(names("", ", known: []", true),
               (Names{"plane2.tilt1", "plane2.tilt2", "plane2.offset"}));
     const Campaign campaign =
-        read(replaced(planes, "offset_mm: 900", "offset_mm: 900, known: [normal]"));
+        with_sensor(replaced(planes, "offset_mm: 900", "offset_mm: 900, known: [normal]"));
     EXPECT_EQ(campaign.nominal.sensor.size(), 4);
     EXPECT_DOUBLE_EQ(campaign.nominal.sensor[3], 0.9);
 }
 
 TEST(ReadSensor, TellsWhatIsWrongAndWhere) {
     const auto error = [](const std::string& sensor) {
-        return input_error_of([&] { read(sensor); });
+        return input_error_of([&] { with_sensor(sensor); });
     };
     const std::string rule = "; must point away from the face, its length from 1e-09 to 1e+09";
     expect_messages(
@@ -321,7 +328,7 @@ TEST(ReadMeasurementsCsv, RefusesADistanceBelowZero) {
 
 TEST(WriteMeasurementsCsv, KeepsEveryKindOfNumber) {
     for (const std::string& sensor : {poses, distances, planes}) {
-        const CampaignFile file = read(sensor);
+        const CampaignFile file = with_sensor(sensor);
         const Campaign& campaign = file;
         const Simulation simulated = simulate(campaign, {.pose_count = 4, .repeats = 2});
         const TemporaryFolder folder;

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <sstream>
-
 #include "../../src/model/complete_model.hpp"
 #include "../../src/model/sampling.hpp"
 #include "campaign_text.hpp"
@@ -21,13 +19,6 @@ namespace {
 
 using namespace detail;
 using namespace testing;
-
-std::string vector_text(const Vector3d& v) {
-    std::ostringstream words;
-    words.precision(17);
-    words << v.x() << ' ' << v.y() << ' ' << v.z();
-    return words.str();
-}
 
 /// Joints with random origins and axes, every third fixed, the last one as asked for.
 std::string random_urdf(RandomStream& stream, bool is_last_fixed) {

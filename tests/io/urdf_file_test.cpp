@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <sstream>
-
 #include "../../src/model/complete_model.hpp"
 #include "lift_urdf.hpp"
 #include "posewise/io/robot_files.hpp"
@@ -15,10 +13,8 @@ namespace {
 using namespace detail;
 using namespace testing;
 
-const std::string& text = lift_urdf;
-
 TEST(ReadUrdf, GivesTheJointsFromBaseToTip) {
-    const UrdfRobot robot = read(text);
+    const UrdfRobot robot = read(lift_urdf);
     EXPECT_EQ(robot.name, "lift & arm");
     ASSERT_EQ(robot.joints.size(), 4U);
     EXPECT_EQ(robot.joints[0].name, "lift");
@@ -31,14 +27,15 @@ TEST(ReadUrdf, GivesTheJointsFromBaseToTip) {
 }
 
 TEST(ReadUrdf, TakesLimitsAndNames) {
-    const Chain chain = make_chain(read(text));
+    const Chain chain = make_chain(read(lift_urdf));
     ASSERT_EQ(chain.joint_count(), 3);
     EXPECT_EQ(chain.joints()[1].name, "arm_joint");
     EXPECT_EQ(chain.joints()[1].lower, -1.5);
     EXPECT_EQ(chain.joints()[1].upper, 2);
     EXPECT_EQ(chain.joints()[2].upper, std::numbers::pi);
     EXPECT_EQ(chain.joint(0).motion, Motion::Translation);
-    const std::string faster = replaced(text, "<origin xyz=\"0.4 0 0\"/>", "<limit velocity='4'/>");
+    const std::string faster =
+        replaced(lift_urdf, "<origin xyz=\"0.4 0 0\"/>", "<limit velocity='4'/>");
     EXPECT_EQ(joint_speeds(read(faster)), Vector3d(0.5, 1.5, 4));
 }
 
@@ -57,14 +54,8 @@ TEST(ReadUrdf, FoldsFixedJoints) {
         Isometry3d(rotation_from_rpy({0.1, -0.2, 1.5})) * Translation3d(0, 0, 0.3) *
         AngleAxisd(0.4, Vector3d::UnitX()) * AngleAxisd(q[1], -Vector3d::UnitY()) *
         Translation3d(0.4, 0, 0) * AngleAxisd(q[2], Vector3d::UnitX());
-    EXPECT_TRUE(make_chain(read(text)).base_from_flange(q, VectorXd()).isApprox(expected, 1e-14));
-}
-
-std::string vector_text(const Vector3d& v) {
-    std::ostringstream words;
-    words.precision(17);
-    words << v.x() << ' ' << v.y() << ' ' << v.z();
-    return words.str();
+    EXPECT_TRUE(
+        make_chain(read(lift_urdf)).base_from_flange(q, VectorXd()).isApprox(expected, 1e-14));
 }
 
 TEST(ReadUrdf, ForwardKinematicsOfRandomAxesAgree) {
@@ -149,7 +140,7 @@ TEST(BadUrdf, Limits) {
 }
 
 TEST(ReadUrdf, WarnsOfAttributesOfLimitsThatItDoesNotKnow) {
-    const UrdfRobot robot = read(replaced(text, "effort=\"10\"", "command_effort=\"10\""));
+    const UrdfRobot robot = read(replaced(lift_urdf, "effort=\"10\"", "command_effort=\"10\""));
     const std::vector<std::string> doubts = describe_doubts(robot);
     ASSERT_EQ(doubts.size(), 1U);
     const std::string end =
@@ -161,7 +152,7 @@ TEST(ReadUrdf, WarnsOfAttributesOfLimitsThatItDoesNotKnow) {
 
 TEST(ReadUrdf, LeavesWhatIsOfOtherNamespacesToOthers) {
     std::string extended =
-        replaced(text, "effort=\"10\"", "drake:acceleration=\"5\" effort=\"10\"");
+        replaced(lift_urdf, "effort=\"10\"", "drake:acceleration=\"5\" effort=\"10\"");
     extended = replaced(extended, "<axis xyz=\"0 -1 0\"/>",
                         "<axis drake:x=\"1\" xyz=\"0 -1 0\"/><drake:mimc joint=\"a\"/>");
     const UrdfRobot robot = read(extended);
@@ -171,7 +162,8 @@ TEST(ReadUrdf, LeavesWhatIsOfOtherNamespacesToOthers) {
 
 TEST(ReadUrdf, TakesATemplateThatIsOnlyOfLooks) {
     const auto with = [](const std::string& inside) {
-        return replaced(text, "<link name=\"base\"/>", "<link name=\"base\">" + inside + "</link>");
+        return replaced(lift_urdf, "<link name=\"base\"/>",
+                        "<link name=\"base\">" + inside + "</link>");
     };
     const std::string macro = "<xacro:colour name=\"grey\"/>";
     EXPECT_EQ(error_of(with("<visual>" + macro + "</visual>")), "no error");
@@ -180,9 +172,10 @@ TEST(ReadUrdf, TakesATemplateThatIsOnlyOfLooks) {
     for (const std::string& inside : {macro, "<inertial>" + macro + "</inertial>"}) {
         EXPECT_NE(error_of(with(inside)).find("is a template for xacro"), std::string::npos);
     }
-    EXPECT_NE(error_of(replaced(text, "<axis xyz=\"0 -1 0\"/>", "<axis xyz=\"0 -1 0\"/>" + macro))
-                  .find("is a template for xacro"),
-              std::string::npos);
+    EXPECT_NE(
+        error_of(replaced(lift_urdf, "<axis xyz=\"0 -1 0\"/>", "<axis xyz=\"0 -1 0\"/>" + macro))
+            .find("is a template for xacro"),
+        std::string::npos);
 }
 
 TEST(BadUrdf, NamesAMimicOfAJointOutsideBeforeItMissesJoints) {
@@ -201,14 +194,14 @@ TEST(BadUrdf, NamesAMimicOfAJointOutsideBeforeItMissesJoints) {
 
 TEST(ReadUrdf, TakesHugeLimitsForNone) {
     const std::string turning =
-        replaced(text, "lower=\"-1.5\" upper=\"2\"", "lower=\"-1e16\" upper=\"1e16\"");
+        replaced(lift_urdf, "lower=\"-1.5\" upper=\"2\"", "lower=\"-1e16\" upper=\"1e16\"");
     const Chain chain = make_chain(read(turning));
     EXPECT_EQ(chain.joints()[1].lower, -std::numbers::pi);
     EXPECT_EQ(read(turning).joints[2].kind, UrdfJointKind::Continuous);
     const std::string sliding =
-        replaced(text, "lower=\"0\" upper=\"0.8\"", "lower=\"-1e16\" upper=\"1e16\"");
+        replaced(lift_urdf, "lower=\"0\" upper=\"0.8\"", "lower=\"-1e16\" upper=\"1e16\"");
     EXPECT_FALSE(read(sliding).joints[0].limits);
-    const std::string fast = replaced(text, "velocity=\"1.5\"", "velocity=\"1e16\"");
+    const std::string fast = replaced(lift_urdf, "velocity=\"1.5\"", "velocity=\"1e16\"");
     EXPECT_EQ(read(fast).joints[2].speed, 0);
 }
 
@@ -216,23 +209,23 @@ TEST(ReadUrdf, DrivesAMimicByTheJointThatItMimics) {
     const std::string mimic = "<mimic joint=\"wrist\" multiplier=\"-0.5\" offset=\"0.2\"/>";
     const std::string with_origin = "<origin xyz=\"0 0.1 0\"/><axis xyz=\"0 0 -1\"/>" + mimic;
     const UrdfRobot robot =
-        read(replaced(text, "<mimic joint=\"wrist\"/>", with_origin), "base", "finger");
+        read(replaced(lift_urdf, "<mimic joint=\"wrist\"/>", with_origin), "base", "finger");
     const Chain chain = make_chain(robot);
     ASSERT_EQ(chain.joint_count(), 3);
     const Vector3d q(0.3, 0.8, -1.1);
-    const Isometry3d expected = make_chain(read(text)).base_from_flange(q, VectorXd()) *
+    const Isometry3d expected = make_chain(read(lift_urdf)).base_from_flange(q, VectorXd()) *
                                 Eigen::Translation3d(0, 0.1, 0) *
                                 Eigen::AngleAxisd(-0.5 * q[2] + 0.2, -Vector3d::UnitZ());
     EXPECT_TRUE(chain.base_from_flange(q, VectorXd()).isApprox(expected, 1e-14));
-    EXPECT_EQ(make_chain(read(text, "base", "finger")).joint_count(), 3);
+    EXPECT_EQ(make_chain(read(lift_urdf, "base", "finger")).joint_count(), 3);
 }
 
 TEST(ReadUrdf, LimitsAJointByWhatItsMimicMay) {
     const auto limits_with = [](const std::string& mimic) {
         const std::string limited =
             mimic + "<limit lower=\"-0.4\" upper=\"0.1\" effort=\"1\" velocity=\"1\"/>";
-        const Chain chain =
-            make_chain(read(replaced(text, "<mimic joint=\"wrist\"/>", limited), "base", "finger"));
+        const Chain chain = make_chain(
+            read(replaced(lift_urdf, "<mimic joint=\"wrist\"/>", limited), "base", "finger"));
         return std::pair{chain.joint(2).lower, chain.joint(2).upper};
     };
     const auto [lower, upper] =
@@ -245,7 +238,7 @@ TEST(ReadUrdf, LimitsAJointByWhatItsMimicMay) {
 TEST(BadUrdf, Mimics) {
     const std::string stated = "<mimic joint=\"wrist\"/>";
     const auto error = [&](const std::string& by, const std::string& base) {
-        return error_of(replaced(text, stated, by), base, "finger");
+        return error_of(replaced(lift_urdf, stated, by), base, "finger");
     };
     const std::string rule =
         ", which is no joint between base link 'base' and tip link 'finger' that moves by itself; "
@@ -285,8 +278,8 @@ TEST(BadUrdf, Trees) {
          "7:3: a <link> has name 'a\\x0arm'; must be one line without control characters"},
         {"<link name=\"arm\"/>", "<link name=\"a\nrm\"/>",
          "7:3: a <link> has name 'a\\x0arm'; must be one line without control characters"},
-        {text, "<robot name='a'/>", "1:1: has no <link>; a robot must have links"},
-        {text, "<sdf><robot/></sdf>",
+        {lift_urdf, "<robot name='a'/>", "1:1: has no <link>; a robot must have links"},
+        {lift_urdf, "<sdf><robot/></sdf>",
          "1:1: is no URDF: its root element is <sdf>; must be <robot>"},
     });
 }
@@ -309,9 +302,10 @@ TEST(BadUrdf, Ends) {
               "robot.urdf:30:3: joint 'grip' mimics 'wrist', which is no joint between base link "
               "'tool' and tip link 'finger' that moves by itself; choose links that hold both or "
               "neither, or make it fixed"}}) {
-        EXPECT_EQ(error_of(text, base, tip), message);
+        EXPECT_EQ(error_of(lift_urdf, base, tip), message);
     }
-    const std::string two = replaced(text, "<parent link=\"tool\"/>", "<parent link=\"arm\"/>");
+    const std::string two =
+        replaced(lift_urdf, "<parent link=\"tool\"/>", "<parent link=\"arm\"/>");
     EXPECT_EQ(error_of(two, "", ""),
               "robot.urdf: the tip link must be named (--tip), it could be finger or tool");
     const std::string ring = replaced(urdf_text({{"fixed", "", ""}, {"fixed", "", ""}}),

@@ -307,13 +307,6 @@ TEST(BadUrdfSection, GivesOneLine) {
                     });
 }
 
-std::string vector_text(const Vector3d& v) {
-    std::ostringstream words;
-    words.precision(17);
-    words << v.x() << ' ' << v.y() << ' ' << v.z();
-    return words.str();
-}
-
 /// A random axis in the frame of an origin; a third of the time exactly parallel to the last one, a
 /// third exactly perpendicular.
 Vector3d next_axis(RandomStream& stream, const Vector3d& last) {

@@ -25,7 +25,7 @@ struct Searched {
         for (int start = 0; start < 6; ++start) {
             std::vector<Index> poses;
             for (Index k = 0; k < 16; ++k) poses.push_back(group_count * random.index(10) + k);
-            const Score score = problem.score(problem.regularised_information(poses));
+            const SearchScore score = problem.score(problem.regularised_information(poses));
             ends.push_back(improve(problem, shortlist, {poses, score}));
             if (best.poses.empty() || is_better(ends.back().score, best.score)) best = ends.back();
         }

@@ -1,10 +1,21 @@
 #pragma once
 
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "posewise/core/types.hpp"
+
 /// URDF files in a few words.
 namespace posewise::testing {
+
+/// Three numbers, separated by blanks, as read back.
+inline std::string vector_text(const Vector3d& v) {
+    std::ostringstream words;
+    words.precision(17);
+    words << v.x() << ' ' << v.y() << ' ' << v.z();
+    return words.str();
+}
 
 struct JointText {
     std::string type;

@@ -88,13 +88,14 @@ class Remainder {
 };
 
 /// Slope of y over x once what the remainder takes out is out of both.
-struct Line {
+struct FittedLine {
     double slope = 0;
     double error = 0;    ///< its standard deviation
     double freedom = 1;  ///< degrees of freedom of that
 };
 
-std::optional<Line> fit_line(const VectorXd& x, const VectorXd& y, const Remainder& remainder) {
+std::optional<FittedLine> fit_line(const VectorXd& x, const VectorXd& y,
+                                   const Remainder& remainder) {
     constexpr double explained = 1e-9;  // part of x's square below which nothing of it is left
     constexpr double most_alike = 0.95;
     const VectorXd own_x = remainder(x), own_y = remainder(y);
@@ -108,7 +109,8 @@ std::optional<Line> fit_line(const VectorXd& x, const VectorXd& y, const Remaind
     const double alike =
         left > 0 ? std::clamp(rest.head(pairs).dot(rest.tail(pairs)) / left, 0.0, most_alike) : 0;
     const double wider = (1 + alike) / (1 - alike);
-    return Line{slope, std::sqrt(left / degrees / square * wider), std::max(1.0, degrees / wider)};
+    return FittedLine{slope, std::sqrt(left / degrees / square * wider),
+                      std::max(1.0, degrees / wider)};
 }
 
 }  // namespace
@@ -271,7 +273,7 @@ std::optional<RmsInterval> held_out_interval(const Campaign& campaign,
 
 namespace {
 
-constexpr double wanted = 0.8;  // of an error, that more poses shall leave
+constexpr double wanted_part = 0.8;  // of an error, that more poses shall leave
 
 /// Between the points, which are in the order of their counts, on logarithmic axes.
 double error_at(const std::vector<ErrorAtCount>& points, double ErrorAtCount::*error, Index n) {
@@ -289,7 +291,7 @@ std::optional<Index> find_more(const std::vector<ErrorAtCount>& points, double E
                                Index count) {
     const double now = error_at(points, error, count);
     for (Index n = count + 1; n <= points.back().pose_count; ++n) {
-        if (error_at(points, error, n) <= wanted * now) return n - count;
+        if (error_at(points, error, n) <= wanted_part * now) return n - count;
     }
     return std::nullopt;
 }

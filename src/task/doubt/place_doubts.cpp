@@ -10,7 +10,7 @@ namespace posewise {
 namespace {
 
 /// Base and targets are measured by hand before; a robot's errors move them by less.
-constexpr double elsewhere = 0.1;  // m
+constexpr double far_away = 0.1;  // m
 
 PlaceDoubt::Unit find_unit(double stated, double found) {
     constexpr double least = 0.02;  // m: nearer to the origin nothing can be said
@@ -25,7 +25,7 @@ PlaceDoubt::Unit find_unit(double stated, double found) {
 }
 
 /// Whether it is elsewhere, whatever its unit.
-bool is_away(const PlaceDoubt& place) { return (place.found - place.stated).norm() > elsewhere; }
+bool is_away(const PlaceDoubt& place) { return (place.found - place.stated).norm() > far_away; }
 
 bool is_doubtful(const PlaceDoubt& place) {
     return place.unit != PlaceDoubt::Unit::AsRead || place.turn > 0 || is_away(place);
