@@ -44,20 +44,16 @@ std::vector<std::vector<Index>> make_folds(const Measurements& measurements, Ind
 class Linearisation {
   public:
     Linearisation(const IdentificationProblem& problem, const Parameters& parameters)
-        : system_(linearise(problem, parameters)), all_(normal_equations(problem, system_)) {
-        const Index width = problem.campaign.sensor->rows_per_target();
-        for (Index i = 0; i < problem.means.configuration_count(); ++i) {
-            first_row_.push_back(first_row_.back() + width * problem.means.is_seen.row(i).count());
-        }
-    }
+        : system_(linearise(problem, parameters)), all_(normal_equations(problem, system_)) {}
 
     NormalEquations without(const std::vector<Index>& configurations) const {
         NormalEquations others = all_;
         for (const Index i : configurations) {
             const auto k = static_cast<std::size_t>(i);
-            const Index rows = first_row_[k + 1] - first_row_[k];
-            const MatrixXd J = system_.J().middleRows(first_row_[k], rows);
-            const auto r = system_.r().segment(first_row_[k], rows);
+            const Index first = system_.first_row[k];
+            const Index rows = system_.first_row[k + 1] - first;
+            const MatrixXd J = system_.J().middleRows(first, rows);
+            const auto r = system_.r().segment(first, rows);
             others.M.selfadjointView<Eigen::Lower>().rankUpdate(J.transpose(), -1);
             others.g -= J.transpose() * r;
             others.squares -= r.squaredNorm();
@@ -68,7 +64,6 @@ class Linearisation {
   private:
     LinearisedSystem system_;
     NormalEquations all_;
-    std::vector<Index> first_row_{0};
 };
 
 /// Identifications without some configurations each.

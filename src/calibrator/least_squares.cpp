@@ -9,6 +9,7 @@
 #include "core/decompositions.hpp"
 #include "core/products.hpp"
 #include "core/text.hpp"
+#include "jacobian/whitened_pose.hpp"
 #include "measurement/noise.hpp"
 #include "normal_equations.hpp"
 #include "posewise/core/errors.hpp"
@@ -39,6 +40,14 @@ void check_size(const Campaign& campaign, const Measurements& measurements) {
     }
 }
 
+/// Of the flange's six ways to move, the sensor's unknowns and the residual.
+Index narrow_width(const Sensor& sensor) { return 7 + std::ssize(sensor.unknown_names()); }
+
+bool pays_narrowly(const Sensor& sensor) {
+    const bool has_one_kind = !(sensor.has_lengths() && sensor.has_angles());
+    return has_one_kind && sensor.row_count() >= 2 * narrow_width(sensor);
+}
+
 /// Of one configuration after another what the measurements tell, in memory that it takes once.
 class Configurations {
   public:
@@ -63,7 +72,29 @@ class Configurations {
         return finish(i, parameters, all);
     }
 
-    /// The same with other columns in the place of J.
+    /// The same in no more than narrow_width() rows. J = A E, with the derivative A of the readings
+    /// by six ways in which the flange may move and by the sensor's unknowns (WhitenedPose). With
+    /// [A r] = Q [R z; 0 s] whitened and weighted, |J d - r|^2 = |R E d - z|^2 + s^2.
+    Index state_narrowly(Index i, const Parameters& parameters, Eigen::Ref<RowMatrixXd> all) {
+        go_to(i);
+        differentiate_flange(problem_.campaign, parameters, q_, motion_);
+        const Index columns = 6 + parameters.sensor.size();
+        readings_.resize(sensor_.row_count(), columns + 1);
+        sensor_.differentiate(motion_.world_from_flange, TwistMatrix::Identity(6, 6),
+                              parameters.sensor, readings_.leftCols(columns));
+        RowMatrixXd R;
+        if (problem_.loss.kind == LossKind::Squares) {
+            readings_.rightCols(1) = deviate(i, parameters);
+            R = noise_.triangle_of_seen(motion_, parameters.sensor, repeats_, readings_);
+        } else {
+            R = triangular_factor(readings_.topRows(finish(i, parameters, readings_)));
+        }
+        spread(R.leftCols(columns), motion_.twists, all.topLeftCorner(R.rows(), all.cols() - 1));
+        all.rightCols(1).topRows(R.rows()) = R.rightCols(1);
+        return R.rows();
+    }
+
+    /// The same as state() with other columns in the place of J.
     Index state_columns(Index i, const Parameters& parameters, const FillColumns& fill,
                         Eigen::Ref<RowMatrixXd> all) {
         go_to(i);
@@ -71,6 +102,20 @@ class Configurations {
         fill(i, all.leftCols(all.cols() - 1));
         return finish(i, parameters, all);
     }
+    /// The sum of squares of the whitened residuals, so found more quickly.
+    double square(Index i, const Parameters& parameters, const Parameters& of_noise) {
+        go_to(i);
+        place_flange(parameters);
+        readings_.resize(sensor_.row_count(), 7);
+        readings_.rightCols(1) = deviate(i, parameters);
+        if (&of_noise != &parameters) place_flange(of_noise);
+        sensor_.differentiate(motion_.world_from_flange, TwistMatrix::Identity(6, 6),
+                              of_noise.sensor, readings_.leftCols<6>());
+        return noise_.triangle_of_seen(motion_, of_noise.sensor, repeats_, readings_)
+            .rightCols(1)
+            .squaredNorm();
+    }
+
     /// Lengths of the whitened residuals, of one target seen after another, to the front of
     /// `lengths`; returns how many they are.
     Index measure(Index i, const Parameters& parameters, const Parameters& of_noise,
@@ -133,6 +178,7 @@ class Configurations {
     VectorXd predicted_;
     VectorXd deviation_;
     RowMatrixXd residual_;
+    RowMatrixXd readings_;  // A, then r
 };
 
 }  // namespace
@@ -179,20 +225,29 @@ std::string describe_missing_equations(const IdentificationProblem& problem) {
                        count_of(problem.equation_count(), "equation"), problem.units.size());
 }
 
-LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters) {
+LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters,
+                           Equations equations) {
     const Campaign& campaign = problem.campaign;
     const Index size = problem.units.size();
-    LinearisedSystem system{RowMatrixXd(problem.equation_count(), size + 1)};
-    RowMatrixXd of_configuration(campaign.sensor->row_count(), size + 1);
+    const bool is_narrow = equations == Equations::Fewest && pays_narrowly(*campaign.sensor);
+    const Index width = is_narrow ? narrow_width(*campaign.sensor) : campaign.sensor->row_count();
     Configurations configurations(problem);
+    const Index most = std::min(problem.observation_count(), width * configurations.count());
+    const Index count = problem.prior_count();
+    LinearisedSystem system{RowMatrixXd(most + count, size + 1)};
+    system.first_row.reserve(static_cast<std::size_t>(configurations.count()) + 1);
+    RowMatrixXd of_configuration(width, size + 1);
     Index row = 0;
     for (Index i = 0; i < configurations.count(); ++i) {
-        const Index rows = configurations.state(i, parameters, of_configuration);
+        const Index rows = is_narrow
+                               ? configurations.state_narrowly(i, parameters, of_configuration)
+                               : configurations.state(i, parameters, of_configuration);
         system.augmented.middleRows(row, rows) = of_configuration.topRows(rows);
         row += rows;
+        system.first_row.push_back(row);
     }
     problem.units.scale_columns(system.augmented.topLeftCorner(row, size));
-    const Index count = problem.prior_count();
+    system.augmented.conservativeResize(row + count, Eigen::NoChange);
     if (count > 0) {
         auto prior = system.augmented.bottomRows(count);
         prior.setZero();
@@ -233,10 +288,18 @@ VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters
 double total_loss(const IdentificationProblem& problem, const Parameters& parameters,
                   const Parameters* noise_at) {
     double sum = 0;
-    for (const double length : residual_lengths(problem, parameters, noise_at)) {
-        sum += problem.loss.value(length / problem.deviation);
+    if (problem.loss.kind == LossKind::Squares && pays_narrowly(*problem.campaign.sensor)) {
+        Configurations configurations(problem);
+        for (Index i = 0; i < configurations.count(); ++i) {
+            sum +=
+                configurations.square(i, parameters, noise_at != nullptr ? *noise_at : parameters);
+        }
+    } else {
+        for (const double length : residual_lengths(problem, parameters, noise_at)) {
+            sum += problem.loss.value(length / problem.deviation);
+        }
+        sum *= problem.deviation * problem.deviation;
     }
-    sum *= problem.deviation * problem.deviation;
     if (problem.prior_count() > 0) {
         sum += problem.units.prior_coordinates(problem.campaign, parameters).squaredNorm();
     }

@@ -12,7 +12,8 @@ namespace posewise::detail {
 /// |J d - r|^2 over the scaled step d, rows = equations: observations, then the prior's. The rows
 /// of a target are multiplied by the square root of its weight under the loss.
 struct LinearisedSystem {
-    RowMatrixXd augmented;  ///< equations x (L + 1): J, then r
+    RowMatrixXd augmented;            ///< equations x (L + 1): J, then r
+    std::vector<Index> first_row{0};  ///< of each configuration, and one more, the prior's
 
     auto J() const { return augmented.leftCols(augmented.cols() - 1); }
     auto r() const { return augmented.col(augmented.cols() - 1); }  ///< observed less predicted
@@ -49,7 +50,16 @@ std::string describe_unseen_target(const Campaign& campaign, const Measurements&
 /// The same, or that there are fewer equations than parameters.
 std::string describe_missing_equations(const IdentificationProblem& problem);
 
-LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters);
+/// How many equations a configuration has.
+enum class Equations {
+    /// As many as tell the same: of a camera that sees 40 corners, and whose intrinsic parameters
+    /// are unknown, 16. Only where it pays, and where all numbers observed are of one kind.
+    Fewest,
+    All,  ///< one for each number observed
+};
+
+LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters,
+                           Equations equations = Equations::Fewest);
 
 /// Writes columns of one configuration: all rows of an observation, in m or rad.
 using FillColumns = std::function<void(Index configuration, Eigen::Ref<RowMatrixXd> columns)>;

@@ -55,7 +55,7 @@ double missing_errors(const IdentificationProblem& problem, const Parameters& pa
         const Index to = order[static_cast<std::size_t>(k)] - base;
         if (to >= 0 && to < at.robot.size()) at.robot[to] = parameters.robot[own++];
     }
-    const LinearisedSystem system = linearise(with_all, at);
+    const LinearisedSystem system = linearise(with_all, at, Equations::All);
     // The prior's rows of what is missing are not the poor model's.
     std::vector<Index> rows(static_cast<std::size_t>(with_all.observation_count()));
     std::iota(rows.begin(), rows.end(), Index{0});

@@ -7,7 +7,9 @@
 #include <limits>
 #include <utility>
 
+#include "core/decompositions.hpp"
 #include "core/products.hpp"
+#include "jacobian/whitened_pose.hpp"
 #include "measurement/noise.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "robust.hpp"
@@ -26,6 +28,14 @@ const double log_factor = std::log(model_error_factor);
 
 /// log of the model error's translation and rotation.
 using LogErrors = std::array<double, 2>;
+
+/// The readings of a configuration that are far more than what moves them, x: they are
+/// basis x + rest, x with variance 1, beside errors with the covariance `remainder`.
+struct Narrowed {
+    MatrixXd basis;
+    VectorXd rest;
+    MatrixXd remainder;
+};
 
 class PredictiveScore {
   public:
@@ -70,6 +80,8 @@ class PredictiveScore {
         effects_.resize(most_rows, 6);
         RowMatrixXd all(sensor.row_count(), size_ + 1);
         RowMatrixXd effect = RowMatrixXd::Zero(sensor.row_count(), 6);
+        const Index narrow_width = 6 + parameters.sensor.size();
+        const bool is_narrow = sensor.has_pixels() && sensor.row_count() >= 2 * narrow_width;
         PoseNoise noise(without);
         FlangeMotion motion;
         VectorXd q, repeats, predicted(sensor.row_count()), deviation(sensor.row_count());
@@ -77,18 +89,31 @@ class PredictiveScore {
         for (const Index i : configurations) {
             q = problem.means.configurations.row(i).transpose();
             repeats = times.row(i).transpose();
-            differentiate_pose(without, parameters, q, motion, all.leftCols(size_));
+            if ((repeats.array() == 0).all()) continue;
+            differentiate_flange(without, parameters, q, motion);
             sensor.predict(motion.world_from_flange, parameters.sensor, predicted);
             sensor.deviation(problem.means.observations.row(i).transpose(), predicted, deviation);
-            all.col(size_) = deviation;
-            if ((repeats.array() == 0).all()) continue;
+            TwistMatrix moves;
             if (common_ > 0) {
-                sensor.differentiate(motion.world_from_flange,
-                                     model_error_twists(problem.campaign, motion.world_from_flange,
-                                                        parameters.sensor),
-                                     parameters.sensor, effect);
+                moves = model_error_twists(problem.campaign, motion.world_from_flange,
+                                           parameters.sensor);
             }
             const MatrixXd& covariance = noise.covariance(motion, parameters.sensor, repeats);
+            if (is_narrow) {
+                RowMatrixXd A(sensor.row_count(), narrow_width);
+                sensor.differentiate(motion.world_from_flange, TwistMatrix::Identity(6, 6),
+                                     parameters.sensor, A);
+                row += take_narrowly(A(noise.rows(), Eigen::all), deviation(noise.rows()),
+                                     covariance, motion.twists, moves, row);
+                first_row_.push_back(row);
+                continue;
+            }
+            sensor.differentiate(motion.world_from_flange, motion.twists, parameters.sensor,
+                                 all.leftCols(size_));
+            all.col(size_) = deviation;
+            if (common_ > 0) {
+                sensor.differentiate(motion.world_from_flange, moves, parameters.sensor, effect);
+            }
             const Index count = covariance.rows();
             covariances_.block(row, 0, count, count) = covariance;
             for (const Index of_all : noise.rows()) {
@@ -106,6 +131,28 @@ class PredictiveScore {
         problem.units.scale_columns(stated_.leftCols(size_));
         whitened_.resize(row, size_ + 1);
         if (common_ > 0) factors_.resize(row, sensor.row_count());
+    }
+
+    /// One configuration's rows from `row` on, as few as tell the same; returns how many. With the
+    /// readings' derivative A and residual r (WhitenedPose) and L^-1 A = Q R, covariance = L L^T:
+    /// x = Q^T L^-1 r and R E. What the flange moves is within these, the rest stays as it is.
+    Index take_narrowly(const RowMatrixXd& A, const VectorXd& r, const MatrixXd& covariance,
+                        const TwistMatrix& twists, const TwistMatrix& moves, Index row) {
+        const auto L = cholesky_factor(covariance);
+        const auto lower = L.triangularView<Eigen::Lower>();
+        const auto [Q, R] = orthogonal_factors(lower.solve(MatrixXd(A)));
+        const Index count = R.rows();
+        const VectorXd x = Q.transpose() * lower.solve(r);
+        spread(RowMatrixXd(R), twists, stated_.block(row, 0, count, size_));
+        stated_.col(size_).segment(row, count) = x;
+        effects_.middleRows(row, count) = R.leftCols<6>() * moves;
+        covariances_.block(row, 0, count, count).setIdentity();
+        is_angle_.resize(is_angle_.size() + static_cast<std::size_t>(count), true);
+        MatrixXd basis = lower * Q;
+        VectorXd rest = r - basis * x;
+        MatrixXd remainder = covariance - basis * basis.transpose();
+        narrowed_.push_back({std::move(basis), std::move(rest), std::move(remainder)});
+        return count;
     }
 
     Index row_count() const { return stated_.rows(); }
@@ -168,6 +215,11 @@ class PredictiveScore {
             left[kind] += 1 - used[row];
             ++counts[kind];
         }
+        for (const Narrowed& narrowed : narrowed_) {  // angles, of which nothing is used
+            const auto dropped = static_cast<double>(narrowed.basis.rows() - narrowed.basis.cols());
+            left[1] += dropped;
+            counts[1] += dropped;
+        }
         for (std::size_t kind = 0; kind < 2; ++kind) {
             const std::size_t rows = counts[kind] > 0 ? kind : 1 - kind;
             if (has_[kind]) freedom_[kind] = std::max(left[rows] / counts[rows], 0.0);
@@ -181,7 +233,9 @@ class PredictiveScore {
     double predict() {
         if (V_.cols() < row_count()) return -std::numeric_limits<double>::infinity();
         double score = -log_deviations_;
+        std::size_t next = 0;
         for_each_configuration([&](Index first, Index count) {
+            const std::size_t configuration = next++;
             const auto V_i = V_.middleCols(first, count);
             factor_.noalias() = -V_i.transpose() * V_i;
             factor_.diagonal().array() += 1 + undetermined;
@@ -203,10 +257,19 @@ class PredictiveScore {
             spread_ = spread_ * MatrixXd(F).transpose();
             root.matrixU().solveInPlace(predicted_);
             predicted_ = F * predicted_;
-            covariance_.noalias() = spread_.transpose() * spread_;
+            if (narrowed_.empty()) {
+                covariance_.noalias() = spread_.transpose() * spread_;
+            } else {
+                const auto& [basis, rest, remainder] = narrowed_[configuration];
+                spread_ = spread_ * basis.transpose();
+                covariance_ = remainder;
+                covariance_.noalias() += spread_.transpose() * spread_;
+                predicted_ = basis * predicted_ + rest;
+            }
             constexpr double directions = 6;
-            score += std::min(1.0, directions / static_cast<double>(count)) *
-                     log_density_by_target(count);
+            const Index readings = predicted_.size();
+            score += std::min(1.0, directions / static_cast<double>(readings)) *
+                     log_density_by_target(readings);
         });
         return score;
     }
@@ -250,6 +313,7 @@ class PredictiveScore {
     RowMatrixXd stated_;       ///< Jacobian by scaled parameters and residual, not whitened
     RowMatrixXd covariances_;  ///< but for the model error, of each as many columns as it has rows
     RowMatrixXd effects_;      ///< derivative by model_error_twists(), 6 columns
+    std::vector<Narrowed> narrowed_;  ///< of each; empty where all readings have rows
 
     // The same under one pair of model errors.
     RowMatrixXd whitened_;

@@ -14,13 +14,8 @@ namespace {
 /// Less than this part of a column is outside what the model takes up: then nothing of it shows.
 constexpr double least_part = 1e-6;
 
-void describe_rows(const IdentificationProblem& problem, LinearFit& fit) {
-    const Sensor& sensor = *problem.campaign.sensor;
+void describe_rows(const Sensor& sensor, LinearFit& fit) {
     const Index width = sensor.rows_per_target();
-    for (Index i = 0; i < problem.means.configuration_count(); ++i) {
-        fit.first_row.push_back(fit.first_row.back() +
-                                width * problem.means.is_seen.row(i).count());
-    }
     for (Index row = 0; row < fit.first_row.back(); ++row) {
         fit.is_length.push_back(!sensor.has_lengths() || row % width < sensor.lengths_per_target());
     }
@@ -82,7 +77,7 @@ void find_scale_of_all(const LinearFit& with, Score& score) {
 
 std::optional<LinearFit> linear_fit(const IdentificationProblem& problem,
                                     const Parameters& parameters, FitPrior prior) {
-    const LinearisedSystem system = linearise(problem, parameters);
+    const LinearisedSystem system = linearise(problem, parameters, Equations::All);
     NormalEquations equations = normal_equations(problem, system);
     const Campaign& campaign = problem.campaign;
     if (prior == FitPrior::ExpectedSizes && !campaign.spread.is_prior) {
@@ -98,12 +93,12 @@ std::optional<LinearFit> linear_fit(const IdentificationProblem& problem,
     if (L.rows() == 0) return std::nullopt;
     const Index rows = problem.observation_count();
     RowMatrixXd scaled = system.J().topRows(rows) * inverse.asDiagonal();
-    LinearFit fit{solve_lower(L, scaled.transpose()).transpose(), {}, {0}, {}};
+    LinearFit fit{solve_lower(L, scaled.transpose()).transpose(), {}, system.first_row, {}};
     // One step to the optimum: residuals r - B M^-1 g.
     const VectorXd c =
         L.triangularView<Eigen::Lower>().solve(VectorXd(inverse.cwiseProduct(equations.g)));
     fit.e = system.r().head(rows) - fit.U * c;
-    describe_rows(problem, fit);
+    describe_rows(*campaign.sensor, fit);
     return fit;
 }
 

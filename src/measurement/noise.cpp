@@ -242,13 +242,12 @@ const MatrixXd& PoseNoise::own_covariance(const FlangeMotion& motion,
     sensor.covariance(motion.world_from_flange, sensor_unknowns, of_sensor_);
     const Index count = std::ssize(rows_);
     own_.resize(count, count);
-    for (Index k = 0; k < count; ++k) {  // targets are independent of each other
+    own_.setZero();
+    for (Index k = 0; k < count; k += width) {  // targets are independent of each other
         const Index row = rows_[static_cast<std::size_t>(k)];
-        for (Index i = 0; i < count; ++i) {
-            const double of_one = of_sensor_(row, rows_[static_cast<std::size_t>(i)]);
-            own_(k, i) = of_one / repeats[row / width];
-        }
-        own_(k, k) += own_variances_[row];
+        auto of_target = own_.block(k, k, width, width);
+        of_target = of_sensor_.block(row, row, width, width) / repeats[row / width];
+        of_target.diagonal() += own_variances_.segment(row, width);
     }
     return own_;
 }
@@ -285,13 +284,33 @@ void raise_to_rounding(MatrixXd& covariance, double trace) {
 Index PoseNoise::whiten_seen(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
                              const VectorXd& repeats, Eigen::Ref<RowMatrixXd> rows) {
     const MatrixXd& of_mean = covariance(motion, sensor_unknowns, repeats);
-    const Index count = of_mean.rows();
+    const Index count = take_seen(rows);
+    whiten(of_mean, rows.topRows(count), factor_);
+    return count;
+}
+
+Index PoseNoise::take_seen(Eigen::Ref<RowMatrixXd> rows) const {
+    const Index count = std::ssize(rows_);
     for (Index k = 0; k < count; ++k) {
         const Index row = rows_[static_cast<std::size_t>(k)];
         if (row != k) rows.row(k) = rows.row(row);
     }
-    whiten(of_mean, rows.topRows(count), factor_);
     return count;
+}
+
+RowMatrixXd PoseNoise::triangle_of_seen(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
+                                        const VectorXd& repeats, Eigen::Ref<RowMatrixXd> rows) {
+    const MatrixXd& own = own_covariance(motion, sensor_unknowns, repeats);
+    const Index count = take_seen(rows);
+    whiten(own, rows.topRows(count), factor_);
+    RowMatrixXd R = triangular_factor(rows.topRows(count));
+    const auto R_6 = R.leftCols<6>();
+    const MatrixXd by_flange =
+        R_6 * flange_covariance(campaign_, motion, sensor_unknowns) * R_6.transpose();
+    MatrixXd shared = MatrixXd::Identity(R.rows(), R.rows());
+    raise_to_rounding(shared, by_flange.trace());
+    whiten(shared + by_flange, R);
+    return R;
 }
 
 MatrixXd cholesky_factor(const MatrixXd& covariance) {

@@ -85,7 +85,15 @@ class PoseNoise {
     Index whiten_seen(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
                       const VectorXd& repeats, Eigen::Ref<RowMatrixXd> rows);
 
+    /// The same reduced to a triangle by reflections, of as many rows as columns. The first six
+    /// columns must be the observation's derivative by the flange's motions, so that what these
+    /// share needs no more than the triangle: K^-1 R where the rows whitened by own_covariance()
+    /// are Q R and K K^T = I + R_6 C R_6^T, C the flange_covariance().
+    RowMatrixXd triangle_of_seen(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
+                                 const VectorXd& repeats, Eigen::Ref<RowMatrixXd> rows);
+
   private:
+    Index take_seen(Eigen::Ref<RowMatrixXd> rows) const;
     void add_effects(const FlangeMotion& motion, const VectorXd& sensor_unknowns);
 
     const Campaign& campaign_;
