@@ -1,6 +1,7 @@
 #include <cmath>
 #include <span>
 
+#include "core/decompositions.hpp"
 #include "core/parallel.hpp"
 #include "core/statistics.hpp"
 #include "measurement/noise.hpp"
@@ -136,6 +137,44 @@ ExpectedError expected_place_error(const Campaign& campaign, const Estimate& est
     }
     const auto count = static_cast<double>(configurations.rows() * targets.count());
     return {std::sqrt(sum.parameters / count), std::sqrt(sum.model / count), 0};
+}
+
+RobotError expected_robot_error(const Campaign& campaign, const Estimate& estimate,
+                                const RowMatrixXd& configurations) {
+    const Targets& targets = campaign.sensor->targets();
+    const VectorXd& unknowns = estimate.parameters.sensor;
+    const Index rows = 3 * targets.count();
+    const Index of_base = base_parameter_count(campaign);
+    const Index of_robot = campaign.robot.parameter_count();
+    RowMatrixXd J(rows, parameter_count(campaign));
+    RowMatrixXd all(rows * configurations.rows(), of_robot);
+    RowMatrixXd refitted = RowMatrixXd::Zero(all.rows(), 6 + rows);
+    FlangeMotion motion;
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        differentiate_flange(campaign, estimate.parameters, configurations.row(i).transpose(),
+                             motion);
+        targets.differentiate(motion.world_from_flange, motion.twists, unknowns, J);
+        all.middleRows(rows * i, rows) = J.middleCols(of_base, of_robot);
+        auto of_pose = refitted.middleRows(rows * i, rows);
+        targets.differentiate(motion.world_from_flange, TwistMatrix::Identity(6, 6), unknowns,
+                              of_pose.leftCols<6>());
+        for (Index k = 0; k < targets.count(); ++k) {
+            of_pose.block<3, 3>(3 * k, 6 + 3 * k) = motion.world_from_flange.linear();
+        }
+    }
+    const MatrixXd Q = detail::orthogonal_factors(refitted).Q;
+    all -= Q * (Q.transpose() * all);
+    const auto count = static_cast<double>(configurations.rows() * targets.count());
+    const double model =
+        expected_place_error(campaign, estimate, configurations).model;  // hardly refitted
+    const double parameters =
+        (all * estimate.covariance.block(of_base, of_base, of_robot, of_robot))
+            .cwiseProduct(all)
+            .sum() /
+        count;
+    const double found = (all * estimate.parameters.robot).squaredNorm() / count;
+    const double unknown = parameters + model * model;
+    return {std::sqrt(found + unknown), std::sqrt(unknown)};
 }
 
 ExpectedError expected_sample_error(const Campaign& campaign, const Estimate& estimate,

@@ -153,6 +153,15 @@ std::string describe_expected(const Calibration& calibration) {
                 detail::format_error(place->parameters, length_units),
                 detail::format_error(place->model, length_units));
         }
+        if (const auto& robot = calibration.expected_robot) {
+            text += fmt::format(
+                "expected over the workspace, of the robot alone (base and {} refitted): {}, "
+                "nominal {}{}\n",
+                calibration.campaign.sensor->words().place,
+                detail::format_error(robot->calibrated, length_units),
+                detail::format_error(robot->nominal, length_units),
+                robot->calibrated < robot->nominal ? "" : ": nothing is gained");
+        }
     } else if (!calibration.campaign.sensor->has_contacts()) {
         text +=
             "expected over the workspace: not known; the joint limits or the cell leave no poses\n";

@@ -145,6 +145,13 @@ std::vector<Answer> complete(const Planning& planning, const std::string& accura
         if (!text.empty()) answers.push_back({key, question, text});
     };
     add("sureness", "How sure", describe_sureness(planning, simulated));
+    if (const auto& robot = planning.robot_alone) {
+        add("robot_alone", "The robot alone",
+            fmt::format("{}, {} nominal, where its base and the {} are refitted{}",
+                        format_error(robot->calibrated, false), format_error(robot->nominal, false),
+                        planning.campaign.sensor->words().place,
+                        robot->calibrated < robot->nominal ? "" : ": these views gain nothing"));
+    }
     add("left_out", "Errors left out", describe_left_out(planning));
     if (planning.plan.efficiency > 0) add("proof", "How good", explain_proof(planning.plan));
     add("limit", "What limits it", describe_limit(planning.budget));

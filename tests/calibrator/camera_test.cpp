@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include "../../src/calibrator/least_squares.hpp"
+#include "../../src/calibrator/robust.hpp"
 #include "../../src/measurement/feasible.hpp"
+#include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
@@ -134,6 +137,58 @@ TEST(Camera, FindsWhereMarkersAreAsItsCovarianceSays) {
         EXPECT_LT(standard_deviations(estimate).segment(markers, 24).mean(), 0.8e-3);
     }
     EXPECT_NEAR(squares / count, 1, 0.25);
+}
+
+/// A calibration by a view's sixteen equations is that by all of its readings.
+TEST(Camera, NeedsFewEquationsAView) {
+    CameraSetup setup = unknown_lens(on_flange_with_lens());
+    setup.corners = chessboard(8, 5, 0.04);
+    setup.view.least_corners = 6;
+    Campaign campaign = before_camera(tracked_campaign(fanuc()), setup);
+    campaign.spread = population_spread(campaign.robot);
+    Simulation simulated =
+        simulate(campaign, {.pose_count = 12, .repeats = 1, .truth_seed = 4, .seed = 3});
+    Measurements& measured = simulated.measurements;
+    for (Index k = 0; k < 40; ++k) measured.is_seen(3, k) = k < 4;  // fewer than unknowns
+    for (const LossKind kind : {LossKind::Squares, LossKind::Cauchy}) {
+        detail::IdentificationProblem problem = detail::make_problem(campaign, measured);
+        problem.loss = detail::complete_loss({.kind = kind}, campaign);
+        Parameters at = simulated.truth;
+        at.robot.array() += 1e-4;
+        const auto all = detail::linearise(problem, at, detail::Equations::All);
+        const auto few = detail::linearise(problem, at);
+        EXPECT_LT(few.augmented.rows(), all.augmented.rows() / 3);
+        const MatrixXd expected = all.augmented.transpose() * all.augmented;
+        const MatrixXd found = few.augmented.transpose() * few.augmented;
+        const VectorXd scale = expected.diagonal().cwiseSqrt().cwiseInverse();
+        const MatrixXd difference = scale.asDiagonal() * (found - expected) * scale.asDiagonal();
+        EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-11);
+        ASSERT_EQ(few.first_row.size(), 13U);
+        EXPECT_EQ(few.first_row[4] - few.first_row[3], 8);
+    }
+}
+
+/// What base and tool take up is not the robot's own: of errors of its joints that of the first.
+TEST(Camera, SaysWhatTheRobotAloneIsOffBy) {
+    const Campaign campaign = before_camera(tracked_campaign(fanuc()), fixed_camera());
+    const RowMatrixXd configurations = detail::random_configurations(campaign.robot, 50, 3);
+    const std::vector<std::string> names = campaign.robot.parameter_names();
+    Estimate estimate;
+    estimate.parameters = campaign.nominal;
+    estimate.variance_factor = 1;
+    estimate.covariance.setZero(parameter_count(campaign), parameter_count(campaign));
+    const auto with_error = [&](const std::string& name) {
+        const auto k = std::ranges::find(names, name) - names.begin();
+        estimate.parameters.robot.setZero(std::ssize(names));
+        estimate.parameters.robot[k] = 1e-3;
+        return expected_robot_error(campaign, estimate, configurations);
+    };
+    EXPECT_LT(with_error("dq1").nominal, 1e-9);
+    const RobotError other = with_error("dq3");
+    EXPECT_GT(other.nominal, 1e-4);
+    EXPECT_EQ(other.calibrated, 0);
+    estimate.model_error = 2e-4;
+    EXPECT_NEAR(with_error("dq1").calibrated, std::sqrt(3) * 2e-4, 1e-9);
 }
 
 TEST(Camera, SaysThatViewsShowTooLittle) {

@@ -195,6 +195,11 @@ TEST(FormatCalibration, ShowsWhatAnotherInstrumentJudgesInItsOwnUnits) {
     EXPECT_FALSE(holds(line("error "), "validation")) << text;
     EXPECT_TRUE(holds(line("expected over the workspace, in the instrument's frame: "), " mm"))
         << text;
+    const std::string alone = line("expected over the workspace, of the robot alone");
+    EXPECT_TRUE(holds(alone, " mm, nominal ")) << text;
+    ASSERT_TRUE(calibration.expected_robot);
+    EXPECT_EQ(holds(alone, "nothing is gained"),
+              calibration.expected_robot->calibrated >= calibration.expected_robot->nominal);
 }
 
 TEST(FormatCalibration, NeverSaysWithinChanceOfPosesCalibratedWith) {

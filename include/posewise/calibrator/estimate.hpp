@@ -132,6 +132,16 @@ ExpectedError expected_error(const Campaign& campaign, const Estimate& estimate,
 /// Sensor::targets(), whatever is measured of them. Of the instrument they have no noise.
 ExpectedError expected_place_error(const Campaign& campaign, const Estimate& estimate,
                                    const RowMatrixXd& configurations);
+
+/// RMS of the same places' errors where base and targets are fitted to them, as when another
+/// instrument judges the robot, m.
+struct RobotError {
+    double nominal = 0;
+    double calibrated = 0;
+};
+/// By the estimate and its covariance.
+RobotError expected_robot_error(const Campaign& campaign, const Estimate& estimate,
+                                const RowMatrixXd& configurations);
 /// For single samples instead of means, like residuals().
 ExpectedError expected_sample_error(const Campaign& campaign, const Estimate& estimate,
                                     const Measurements& measured);

@@ -161,6 +161,7 @@ struct Calibration {
     std::optional<ExpectedError> expected_workspace;
     /// Over the same workspace, of the place in space of what a camera sees, m.
     std::optional<ExpectedError> expected_place{};
+    std::optional<RobotError> expected_robot{};
     /// At CalibrationOptions::predicted: for distances, for angles.
     std::vector<ErrorPrediction> predicted;
     std::optional<double> limit;            ///< CalibrationOptions::limit

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "posewise/calibrator/estimate.hpp"
 #include "posewise/core/progress.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/planner/planning.hpp"
@@ -61,6 +62,7 @@ struct Planning {
     std::vector<DropOut> drop_outs;         ///< the poses that hurt most, missing one after another
     double duration = 0;                    ///< s: all moves and standstills
     std::optional<ErrorsLeftOut> left_out;  ///< nothing: none that matter, or an estimate tells
+    std::optional<RobotError> robot_alone{};  ///< over the workspace, where pixels are measured
 };
 
 /// Proposes configurations to measure in the campaign's cell: draws a pool, chooses from it,

@@ -147,6 +147,10 @@ Json expected_to_json(const Calibration& calibration) {
     if (const auto& error = calibration.expected_place) {
         json["of_places"] = one(*error, length_units);
     }
+    if (const auto& error = calibration.expected_robot) {
+        json["of_robot"] = Json{{"nominal_mm", mm_per_m * error->nominal},
+                                {"calibrated_mm", mm_per_m * error->calibrated}};
+    }
     const auto add = [&](const std::optional<Judgement>& judged, const char* where) {
         if (judged && judged->expected) json[where] = one(*judged->expected, *judged->units);
     };

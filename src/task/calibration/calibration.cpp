@@ -225,6 +225,7 @@ void calibrate_with(Work& work, Calibration& result) {
     if (const auto error = detail::expected_workspace_error(result.campaign, result.estimate)) {
         result.expected_workspace = error->readings;
         result.expected_place = error->place;
+        result.expected_robot = error->robot;
     }
     constexpr double far_more = 2;
     const auto& workspace = result.expected_workspace;

@@ -4,13 +4,10 @@
 
 #include "calibrator/least_squares.hpp"
 #include "model/complete_model.hpp"
-#include "posewise/calibrator/estimate.hpp"
 #include "posewise/planner/prediction.hpp"
 
 namespace posewise::detail {
-namespace {
 
-/// Of a robot of which nothing is known but the sizes expected of its errors.
 Estimate uncalibrated(const Campaign& campaign, const Parameters& at) {
     Estimate estimate;
     estimate.parameters = at;
@@ -24,8 +21,6 @@ Estimate uncalibrated(const Campaign& campaign, const Parameters& at) {
     estimate.covariance = sizes.cwiseAbs2().asDiagonal();
     return estimate;
 }
-
-}  // namespace
 
 double expected_distance(const Campaign& campaign, const Measurements& measured) {
     // At nominal targets: fitted to another robot's points they may be anywhere.
@@ -47,7 +42,8 @@ double largest_left_over(const Campaign& campaign, const Parameters& at,
     complete.prior.reset();
     Estimate none = uncalibrated(complete, at);
     const IdentificationProblem problem = make_problem(complete, measured);
-    const MatrixXd J = linearise(problem, none.parameters).J().topRows(problem.observation_count());
+    const LinearisedSystem system = linearise(problem, none.parameters);
+    const MatrixXd J = system.J().topRows(system.first_row.back());
     const Index of_base = base_parameter_count(complete);
     const Index of_robot = complete.robot.parameter_count();
     const Index of_sensor = J.cols() - of_base - of_robot;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "posewise/calibrator/estimate.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
 
@@ -7,6 +8,9 @@ namespace posewise::detail {
 
 /// Another robot's measurements are off by more than so many expected errors.
 inline constexpr double credible_errors = 10;
+
+/// Of a robot of which nothing is known but the sizes expected of its errors.
+Estimate uncalibrated(const Campaign& campaign, const Parameters& at);
 
 /// By how much the nominal robot is expected to miss the points measured, as the spread, the model
 /// error and the instrument's noise say: RMS, m.

@@ -8,6 +8,7 @@
 #include "planner/tour.hpp"
 #include "pool_choices.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "task/calibration/expected_distance.hpp"
 #include "task/calibration/inputs.hpp"
 #include "verification_poses.hpp"
 
@@ -71,6 +72,20 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     return plan;
 }
 
+/// Of what is seen in pixels only.
+std::optional<RobotError> predict_robot_alone(const PlanningProblem& problem, const MatrixXd& M) {
+    const Campaign& campaign = problem.campaign;
+    if (!campaign.sensor->has_pixels()) return std::nullopt;
+    Estimate estimate = uncalibrated(campaign, campaign.nominal);
+    const double nominal = expected_robot_error(campaign, estimate, problem.workspace).calibrated;
+    const VectorXd scale = parameter_scale(campaign);
+    estimate.covariance = scale.asDiagonal() *
+                          M.llt().solve(MatrixXd::Identity(M.rows(), M.cols())) *
+                          scale.asDiagonal();
+    return RobotError{nominal,
+                      expected_robot_error(campaign, estimate, problem.workspace).calibrated};
+}
+
 }  // namespace
 
 void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out_count) {
@@ -89,6 +104,7 @@ void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out
         make_budget(problem.errors, campaign, planning.information, planning.by_noise);
     planning.without_each = drop_each(prediction, blocks, planning.information);
     planning.drop_outs = drop_worst(prediction, blocks, drop_out_count, left);
+    planning.robot_alone = predict_robot_alone(problem, planning.information);
     planning.duration = planning.tour.time + standstill(campaign.cell, std::ssize(poses), repeats);
 }
 
@@ -199,7 +215,7 @@ Planning PlanMaker::finish(PlanOptions search, const PlannedPoses& planned) cons
     planning.pool = pool_;
     planning.tour = std::move(tour);
     planning.measured_count = problem_.measured_count;
-    planning.workspace_count = problem_.workspace_count;
+    planning.workspace_count = problem_.workspace.rows();
     planning.campaign = problem_.campaign;
     planning.errors = problem_.errors;
     planning.search = std::move(search);

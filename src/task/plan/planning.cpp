@@ -36,7 +36,7 @@ Planning judge_again(const Plan& plan, const Campaign& campaign, const PlanningO
         if (!pose.is_kept) ++judged.search.pose_count;
     }
     judged.measured_count = problem.measured_count;
-    judged.workspace_count = problem.workspace_count;
+    judged.workspace_count = problem.workspace.rows();
     judged.campaign = problem.campaign;
     judged.errors = problem.errors;
     judged.information =

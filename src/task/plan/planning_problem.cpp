@@ -132,7 +132,7 @@ PlanningProblem state_planning(const Campaign& given, const PlanningOptions& opt
         cell.least_joint_distance = std::max(cell.least_joint_distance, distance_from_others);
     }
     PlanningProblem problem{
-        options, campaign, Constraints(campaign, std::move(cell)), {}, 0, 0, {}, {}, {}, {}};
+        options, campaign, Constraints(campaign, std::move(cell)), {}, {}, 0, {}, {}, {}, {}};
     complete(problem.request, Criterion::V, campaign.seed);
     problem.request.has_prior = campaign.spread.is_prior;
     if (problem.request.repeats == 0) problem.request.repeats = 1;
@@ -187,10 +187,9 @@ RowMatrixXd workspace_of(const PlanningProblem& problem, const PlanningOptions& 
 }
 
 void draw_workspace(PlanningProblem& problem, const PlanningOptions& options) {
-    const RowMatrixXd workspace = workspace_of(problem, options);
-    problem.workspace_count = workspace.rows();
-    problem.errors =
-        make_position_errors(problem.campaign, workspace, problem.request.workspace_target - 1);
+    problem.workspace = workspace_of(problem, options);
+    problem.errors = make_position_errors(problem.campaign, problem.workspace,
+                                          problem.request.workspace_target - 1);
 }
 
 RowMatrixXd configurations_of(const std::vector<PlannedPose>& poses, Index joint_count) {

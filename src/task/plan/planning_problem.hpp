@@ -14,7 +14,7 @@ struct PlanningProblem {
     Campaign campaign;    ///< base and targets registered if only held measurements tell them
     Constraints constraints;
     PositionErrors errors;  ///< of target positions over the workspace
-    Index workspace_count = 0;
+    RowMatrixXd workspace;  ///< configurations
     Index measured_count = 0;
     std::vector<std::string> measured_ids;
     std::vector<PlannedPose> kept;  ///< of the plan to repair

@@ -46,10 +46,11 @@ std::optional<WorkspaceError> expected_workspace_error(const Campaign& campaign,
             campaign.sensor->has_view()
                 ? viewed_poses(campaign, estimate.parameters, count, 1).configurations
                 : workspace_configurations(campaign, estimate.parameters, count, 1);
-        WorkspaceError error{predict_errors(campaign, estimate, configurations).front().overall,
-                             {}};
+        WorkspaceError error{
+            predict_errors(campaign, estimate, configurations).front().overall, {}, {}};
         if (campaign.sensor->has_pixels()) {
             error.place = expected_place_error(campaign, estimate, configurations);
+            error.robot = expected_robot_error(campaign, estimate, configurations);
         }
         return error;
     } catch (const InputError&) {

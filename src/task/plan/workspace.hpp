@@ -23,6 +23,7 @@ RowMatrixXd workspace_configurations(const Campaign& campaign, const Parameters&
 struct WorkspaceError {
     ExpectedError readings;
     std::optional<ExpectedError> place;  ///< m
+    std::optional<RobotError> robot;
 };
 /// Nothing where no configurations can be drawn, or readings are made at contacts only.
 std::optional<WorkspaceError> expected_workspace_error(const Campaign& campaign,
