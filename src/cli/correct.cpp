@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
@@ -167,14 +169,16 @@ struct ProgramToCorrect {
 };
 
 void warn_of_others(const CorrectArguments& arguments, const io::TargetProgram& program) {
-    if (program.others.empty()) return;
+    constexpr std::size_t most = 20;
+    const std::vector<long>& lines = program.others;
+    if (lines.empty()) return;
+    const auto listed = lines.begin() + static_cast<std::ptrdiff_t>(std::min(most, lines.size()));
+    const std::string more =
+        lines.size() > most ? fmt::format(" and {} more", lines.size() - most) : "";
     print_warning(fmt::format(
-        "{}:{}: is not corrected, {}: no joint values of all joints, or added to other targets",
-        arguments.poses, program.others.front(),
-        program.others.size() == 1 ? "the only one"
-        : program.others.size() == 2
-            ? std::string("nor is one more line")
-            : fmt::format("nor are {} more lines", program.others.size() - 1)));
+        "{}: not corrected: {} {}{}: no joint values of all joints, or added to other targets",
+        arguments.poses, lines.size() == 1 ? "line" : "lines",
+        fmt::join(lines.begin(), listed, ", "), more));
 }
 
 /// FANUC's and KUKA's files are called as the program in them.

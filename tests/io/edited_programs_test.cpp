@@ -102,6 +102,28 @@ TEST(EditedPrograms, AreRefusedWhereTheyDoNotStop) {
     expect(Edited(ProgramFormat::Csv).replace("home,", "home,nan"), "not a number");
 }
 
+TEST(EditedPrograms, AreRefusedWhereTheyAreSpoilt) {
+    const auto expect = [](const Edited& edited, const std::string& words) {
+        EXPECT_NE(edited.error().find(words), std::string::npos) << edited.error();
+    };
+    expect(Edited(ProgramFormat::Ur).replace("r=0)", "r=0"), "has no ) at its end");
+    expect(Edited(ProgramFormat::Ur).replace("r=0)", "r=0, t=-5)"),
+           "has 't=-5'; must not be below");
+    expect(Edited(ProgramFormat::Abb).replace("tool0;", "tool0"), "has no ; at its end");
+    expect(Edited(ProgramFormat::Yaskawa).replace("NPOS ", "NPOS 1"), "lines were lost or added");
+    expect(Edited(ProgramFormat::Yaskawa).replace("VJ=20.00", "VJ=0.00"), "must be above 0");
+    expect(Edited(ProgramFormat::Ros2).replace("named_states:", "states:"), "named_states");
+    // A slip in the word of a move.
+    const std::string slip = "as a move has, but is none that is known";
+    expect(Edited(ProgramFormat::Fanuc).replace("J P[2]", "K P[2]"), slip);
+    expect(Edited(ProgramFormat::Kuka).replace("PTP {A1", "PPT {A1"), slip);
+    expect(Edited(ProgramFormat::Abb).replace("MoveAbsJ", "MovAbsJ"), slip);
+    expect(Edited(ProgramFormat::Ur).replace("movej([", "mvej(["), slip);
+    expect(Edited(ProgramFormat::Yaskawa).replace("MOVJ", "MOJV"), slip);
+    expect(Edited(ProgramFormat::Staubli).replace("movej(joints", "mvej(joints", "/start.pgx"),
+           slip);
+}
+
 /// The example's poses as a plan, v1 to verify.
 Plan plan_of_example(const CampaignFile& campaign) {
     const ControllerJoints& joints = campaign.controller;

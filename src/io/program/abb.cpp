@@ -118,6 +118,10 @@ std::vector<io::ProgramStop> read_abb(const std::string& path, const ControllerJ
             if (one.begins_with("!")) {
                 stops.note(one.text.substr(1));
             } else if (one.begins_with("MoveAbsJ")) {
+                if (!line.text.substr(one.text.data() + one.text.size() - line.text.data())
+                         .starts_with(';')) {
+                    throw one.error("has no ; at its end; must have one");
+                }
                 const std::vector<double> numbers = read_numbers(one, abb_joints(one));
                 check_abb_move(one);
                 stops.move(one, numbers);
@@ -151,7 +155,8 @@ const ProgramKind& abb_program() {
                   .leaves = "RETURN EXIT ExitCycle ERROR UNDO BACKWARD RAISE",
                   .modifiers = "LOCAL TASK"},
          .waits = "WaitTime WaitDI WaitUntil Stop Break",
-         .messages = "TPWrite"},
+         .messages = "TPWrite",
+         .target = "[["},
         &abb_files,
         &read_abb};
     return kind;

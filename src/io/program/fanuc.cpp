@@ -221,7 +221,8 @@ const ProgramKind& fanuc_program() {
                                             .closes = "ENDIF ENDFOR",
                                             .jumps = "JMP TIMEOUT",
                                             .leaves = "END ABORT"},
-                                   .waits = "WAIT PAUSE CALL"},
+                                   .waits = "WAIT PAUSE CALL",
+                                   .target = " P["},
                                   &fanuc_files,
                                   &read_fanuc};
     return kind;

@@ -209,7 +209,8 @@ const ProgramKind& kuka_program() {
                   .jumps = "GOTO RESUME",
                   .leaves = "RETURN",
                   .modifiers = "GLOBAL"},
-         .waits = "WAIT HALT"},
+         .waits = "WAIT HALT",
+         .target = "{A1"},
         &kuka_files,
         &read_kuka};
     return kind;

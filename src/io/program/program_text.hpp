@@ -38,6 +38,7 @@ struct ProgramRules {
     FlowWords flow = {};
     std::string_view waits = "";     ///< begin statements at which the robot waits
     std::string_view messages = "";  ///< begin statements that show the pose's label
+    std::string_view target = "";    ///< that moves have, and assignments
 };
 
 /// A format, which stands in a file of its own: its rules, its writer and its reader, both of the

@@ -109,6 +109,9 @@ std::vector<FileContent> ros2_files(const std::string& path, const io::RobotProg
 std::vector<io::ProgramStop> read_ros2(const std::string& path, const ControllerJoints& joints) {
     constexpr std::size_t most_bytes = 1 << 26;
     const YamlMap file(parse_yaml(read_file(path, most_bytes), path), {"goals", "named_states"});
+    if (!file.find("named_states")) {
+        throw input_error_at({path}, "has no named_states at its end; must be the whole file");
+    }
     StopCollector stops(ros2_program().rules, joints);
     for (const YamlValue& goal : file.require("goals").list()) {
         const YamlMap map(goal, {"name", "dwell_s", "trajectory"});

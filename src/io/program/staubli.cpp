@@ -210,7 +210,8 @@ const ProgramKind& staubli_program() {
                   .leaves = "return",
                   .has_then = false},
          .waits = "delay get wait call",
-         .messages = "putln"},
+         .messages = "putln",
+         .target = "joints["},
         &staubli_files,
         &read_staubli};
     return kind;

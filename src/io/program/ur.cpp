@@ -48,10 +48,13 @@ std::string_view ur_joints(const TextLine& line) {
     return line.text.substr(open + 1, close - open - 1);
 }
 
-/// Throws InputError unless the blend radius is zero: "r=...", or the fifth argument.
+/// Throws InputError unless the blend radius is zero: "r=...", or the fifth argument; for numbers
+/// below 0, and for a call that does not end.
 void check_ur_stop(const TextLine& line) {
     const std::size_t begin = line.text.find(']') + 1;
-    std::string_view rest = line.text.substr(begin, line.text.find(')', begin) - begin);
+    const std::size_t end = line.text.find(')', begin);
+    if (end == std::string_view::npos) throw line.error("has no ) at its end; must have one");
+    std::string_view rest = line.text.substr(begin, end - begin);
     for (int position = 1; !rest.empty(); ++position) {
         const std::size_t comma = std::min(rest.find(','), rest.size());
         const std::string_view argument = trim(rest.substr(0, comma));
@@ -59,9 +62,12 @@ void check_ur_stop(const TextLine& line) {
         const std::size_t equals = argument.find('=');
         const bool has_name = equals != std::string_view::npos;
         const std::string_view name = has_name ? trim(argument.substr(0, equals)) : "";
+        const ParsedNumber value = parse_number(trim(argument.substr(has_name ? equals + 1 : 0)));
+        if (value.ok() && value.value < 0) {
+            throw line.error(fmt::format("has {}; must not be below 0", quote(argument)));
+        }
         if (has_name ? name != "r" : position != 5) continue;
-        const ParsedNumber radius = parse_number(trim(argument.substr(has_name ? equals + 1 : 0)));
-        if (radius.ok() && radius.value == 0) continue;
+        if (value.ok() && value.value == 0) continue;
         throw line.error("does not stop at its position; must have r=0");
     }
 }
@@ -124,7 +130,8 @@ const ProgramKind& ur_program() {
                   .leaves = "return halt",
                   .has_then = false},
          .waits = "sleep popup",
-         .messages = "textmsg popup"},
+         .messages = "textmsg popup",
+         .target = "(["},
         &ur_files,
         &read_ur};
     return kind;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "core/text.hpp"
@@ -70,6 +71,9 @@ void check_yaskawa_move(const TextLine& line) {
         const std::string_view word = rest.substr(0, blank);
         rest = trim(rest.substr(blank));
         if (position < 2) continue;
+        if (word.starts_with("VJ=") && !(parse_number(word.substr(3)).value > 0)) {
+            throw line.error(fmt::format("has {}; must be above 0", quote(word)));
+        }
         const bool is_known = word.starts_with("VJ=") || word == "PL=0" ||
                               word.starts_with("ACC=") || word.starts_with("DEC=");
         if (is_known) continue;
@@ -77,6 +81,14 @@ void check_yaskawa_move(const TextLine& line) {
             fmt::format("has {}, which may lead elsewhere; must have none but VJ, PL, ACC and DEC",
                         quote(word)));
     }
+}
+
+/// Throws InputError unless "///NPOS 12,0,0,..." counts the positions.
+void check_count(const TextLine& line, std::size_t count) {
+    const double stated = read_numbers(line, line.text.substr(line.text.find("NPOS") + 4)).front();
+    if (stated == static_cast<double>(count)) return;
+    throw line.error(fmt::format(
+        "counts {} positions where the job states {}; lines were lost or added", stated, count));
 }
 
 /// Throws InputError unless the positions are in pulses of joints.
@@ -116,12 +128,15 @@ std::vector<io::ProgramStop> read_yaskawa(const std::string& path, const Control
     std::map<std::string, std::vector<double>> positions;
     StopCollector stops(yaskawa_program().rules, joints);
     bool is_instruction = false;
+    std::optional<TextLine> counted;
     for (const TextLine& line : file.lines()) {
         check_kind(line);
         if (line.begins_with("//INST")) is_instruction = true;
         const std::size_t equals = line.text.find('=');
         if (line.begins_with("'")) {
             stops.note(line.text.substr(1));
+        } else if (line.begins_with("///NPOS")) {
+            counted = line;
         } else if (!is_instruction) {
             if (!line.begins_with("C") || equals == std::string_view::npos) continue;
             positions[position_name(line, 0)] = read_numbers(line, line.text.substr(equals + 1));
@@ -138,6 +153,7 @@ std::vector<io::ProgramStop> read_yaskawa(const std::string& path, const Control
             stops.pass(line);
         }
     }
+    if (counted) check_count(*counted, positions.size());
     return stops.finish();
 }
 
@@ -152,7 +168,8 @@ const ProgramKind& yaskawa_program() {
                                             .closes = "ENDIF NEXT ENDWHILE ENDSWITCH",
                                             .jumps = "JUMP",
                                             .leaves = "RET ABORT"},
-                                   .waits = "TIMER PAUSE WAIT CALL"},
+                                   .waits = "TIMER PAUSE WAIT CALL",
+                                   .target = " C0"},
                                   &yaskawa_files,
                                   &read_yaskawa};
     return kind;
