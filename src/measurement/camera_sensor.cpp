@@ -240,6 +240,13 @@ std::vector<NoiseNumber> CameraSensor::noise_numbers() const {
     return numbers;
 }
 
+bool CameraSensor::is_readable(Index target, const ConstNumbers& observation) const {
+    const auto& image = camera(target / corner_count()).image;
+    if (!image) return true;
+    const Vector2d place = observation.segment<2>(2 * target) / detail::kpx_per_px;
+    return (place.array() >= 0).all() && (place.array() <= image->array()).all();
+}
+
 void CameraSensor::view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                                    Eigen::Ref<VectorXd> clearances) const {
     const Isometry3d board = camera_from_board(world_from_flange, unknowns);

@@ -200,6 +200,11 @@ Measurements simulate_measurements(const Campaign& campaign, const Parameters& t
             noise.noalias() = noise_factor * drawn;
             sensor.deviate(expected, noise, predicted);
             measurements.observations.row(i * repeats + k) = predicted.transpose();
+            if (!sensor.has_view()) continue;
+            for (Index target = 0; target < seen.size(); ++target) {
+                if (!seen[target] || sensor.is_readable(target, predicted)) continue;
+                measurements.is_seen(i * repeats + k, target) = false;
+            }
         }
         if (has_contacts) {
             noise =

@@ -9,6 +9,7 @@
 #include "../../src/measurement/differences.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/constraints.hpp"
+#include "posewise/measurement/measurements.hpp"
 #include "posewise/model/chain.hpp"
 #include "support/derivative_check.hpp"
 #include "support/sensors.hpp"
@@ -267,6 +268,28 @@ TEST(CameraSensor, IsPlannedWhereItSeesEnoughCorners) {
     }
     EXPECT_GT(parts, 0) << "poses may show a part of the board";
     EXPECT_GT(pool.rejections[static_cast<std::size_t>(Constraint::View)].in_all, 1000);
+}
+
+/// Noise and what the model cannot express move corners over its edge.
+TEST(CameraSensor, ReadsNothingOutsideOfItsImage) {
+    CameraSetup setup = fixed_camera();
+    setup.sigma = 20;
+    setup.view.least_corners = 4;
+    const Campaign campaign = before_camera(tracked_campaign(fanuc()), setup);
+    const Measurements measured =
+        simulate(campaign, {.pose_count = 100, .repeats = 2}).measurements;
+    Index lost = 0;
+    for (Index sample = 0; sample < measured.is_seen.rows(); ++sample) {
+        const VectorXd observation = measured.observations.row(sample).transpose();
+        for (Index corner = 0; corner < measured.is_seen.cols(); ++corner) {
+            const Vector2d px = 1e3 * observation.segment<2>(2 * corner);
+            const bool is_inside = px.minCoeff() >= 0 && px.x() <= 1280 && px.y() <= 960;
+            EXPECT_EQ(campaign.sensor->is_readable(corner, observation), is_inside);
+            EXPECT_TRUE(is_inside || !measured.is_seen(sample, corner)) << px.transpose();
+            lost += !is_inside && !measured.is_seen(sample, corner) ? 1 : 0;
+        }
+    }
+    EXPECT_GT(lost, 20);
 }
 
 TEST(CameraSensor, IsNotPlannedWhereNobodyKnowsWhatItSees) {

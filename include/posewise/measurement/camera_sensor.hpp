@@ -175,6 +175,7 @@ class CameraSensor final : public Sensor {
                     Eigen::Ref<MatrixXd> covariance) const override;
     bool has_constant_covariance() const override { return true; }
     bool has_view() const override { return true; }
+    bool is_readable(Index target, const ConstNumbers& observation) const override;
     void view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                          Eigen::Ref<VectorXd> clearances) const override;
     Index least_in_view() const override { return setup_.view.least_corners; }

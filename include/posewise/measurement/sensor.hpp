@@ -231,6 +231,10 @@ class Sensor {
     virtual void view_clearances(const Isometry3d& /*world_from_flange*/,
                                  const VectorXd& /*unknowns*/,
                                  Eigen::Ref<VectorXd> /*clearances*/) const {}
+    /// For a sensor with a view: whether it may read this of a target, as inside of an image.
+    virtual bool is_readable(Index /*target*/, const ConstNumbers& /*observation*/) const {
+        return true;
+    }
     /// How many targets a pose must show for a sensor with a view.
     virtual Index least_in_view() const { return 1; }
     /// Index in targets() of the point that a target belongs to.
