@@ -293,6 +293,7 @@ Result calibrate_campaign(const io::CampaignFile& campaign, const std::string& k
             judged = read_measured(asked.validation, file, {}, warnings);
             options.validation = &*judged;
         }
+        options.conditions = measured.conditions;
         options.global.seed = file.seed;
         if (!has_function_sensor(file)) {
             options.richer = [&] { return io::richer_campaigns(file, asked.prior); };

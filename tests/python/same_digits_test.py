@@ -40,6 +40,20 @@ def test_calibration(run, fanuc, fanuc_path, measurements, measurements_path, tm
     )
 
 
+def test_conditions(run, fanuc, fanuc_path, measurements, tmp_path):
+    """Time and temperature beside the measurements are looked at, as by the program."""
+    noted = measurements.assign(
+        time_s=60.0 * np.arange(len(measurements)),
+        temperature_C=20 + 0.1 * np.arange(len(measurements)),
+    )
+    noted.to_csv(tmp_path / "noted.csv", index=False)
+    printed = run("calibrate", fanuc_path, "-m", "noted.csv", cwd=tmp_path)
+    estimate = pw.calibrate(fanuc, noted)
+    assert_same(estimate.document, printed)
+    trends = estimate.document["accuracy"]["condition_trends"]
+    assert [one["name"] for one in trends] == ["time", "temperature"]
+
+
 def test_predictions(run, fanuc, fanuc_path, measurements, measurements_path, tmp_path):
     run("calibrate", fanuc_path, "-m", measurements_path, "--predict", measurements_path,
         "--predict-out", tmp_path / "expected.csv", cwd=tmp_path)
