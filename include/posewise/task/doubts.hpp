@@ -248,6 +248,10 @@ struct Misfit {
     double expected = 0;  ///< by the spread, m
     std::vector<PlaneDoubt> planes;
     std::optional<BetterReading> reading;  ///< for joints, lengths or orientations
+    /// Of several cameras the one, from 0, that by itself is missed by `distance`.
+    std::optional<Index> camera{};
+    bool is_between_cameras = false;  ///< each by itself is missed far less
+    double others = 0;                ///< by which the other cameras, or each by itself, are missed
 };
 
 /// Nothing if the nominal robot explains the measurements, or misses them by less than ten expected

@@ -107,6 +107,11 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
         json["misfit"] = {{"distance" + unit, mm_per_m * misfit->distance},
                           {"expected" + unit, mm_per_m * misfit->expected},
                           {"planes", planes_to_json(misfit->planes)}};
+        if (misfit->camera || misfit->is_between_cameras) {
+            json["misfit"]["others_px"] = 1e3 * misfit->others;
+            json["misfit"]["is_between_cameras"] = misfit->is_between_cameras;
+        }
+        if (misfit->camera) json["misfit"]["camera"] = *misfit->camera + 1;
         if (const auto& reading = misfit->reading) {
             json["misfit"]["reversed"] = reading->reversed;
             json["misfit"]["reading"] = reading_to_json(*reading);

@@ -14,6 +14,7 @@
 #include "model/joint_limits.hpp"
 #include "plane_doubts.hpp"
 #include "posewise/core/types.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "posewise/planner/prediction.hpp"
 #include "residual_ratio.hpp"
@@ -220,9 +221,17 @@ std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& e
 Doubts find_doubts(const Campaign& campaign, const Measurements& measured,
                    const Parameters& registered, const Metrics& nominal) {
     Doubts doubts;
-    doubts.camera = find_camera_doubt(campaign, measured, registered);
-    const bool is_board_wrong = doubts.camera && doubts.camera->board_factor != 1;
-    if (!is_board_wrong) doubts.misfit = find_misfit(campaign, measured, registered);
+    // One of several cameras that is at fault would pass for a board of another size.
+    const bool has_rig = camera_count(*campaign.sensor) > 1;
+    if (has_rig) doubts.misfit = find_misfit(campaign, measured, registered);
+    const bool is_rig_wrong =
+        doubts.misfit && (doubts.misfit->camera || doubts.misfit->is_between_cameras);
+    if (!is_rig_wrong) doubts.camera = find_camera_doubt(campaign, measured, registered);
+    if (doubts.camera && doubts.camera->board_factor != 1) {
+        doubts.misfit.reset();
+    } else if (!has_rig) {
+        doubts.misfit = find_misfit(campaign, measured, registered);
+    }
     if (!doubts.misfit) {
         doubts.planes = find_plane_doubts(campaign, measured);
         doubts.places = find_place_doubts(campaign, registered);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera_misfit.hpp"
 #include "core/format.hpp"
 #include "core/statistics.hpp"
 #include "gross_errors.hpp"
@@ -66,6 +67,9 @@ std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& 
         !are_orientations_off(campaign, residuals)) {
         return std::nullopt;
     }
+    if (auto of_cameras = detail::find_camera_misfit(campaign, measured, misfit)) {
+        return of_cameras;
+    }
     misfit.reading = search_readings(campaign, measured).better;
     const bool is_credible = misfit.distance <= detail::credible_errors * misfit.expected;
     if (is_credible && !misfit.reading) return std::nullopt;
@@ -104,6 +108,22 @@ std::string describe_planes(const std::vector<PlaneDoubt>& planes) {
 
 std::string describe_misfit(const Campaign& campaign, const Misfit& misfit) {
     const std::string_view unit = campaign.sensor->main_units().error;
+    if (misfit.camera) {
+        return fmt::format(
+            "camera {} is at fault: the nominal robot misses half of its corners by over {} px, of "
+            "each other camera by {}; are its columns u and v, its corners' numbers and its rows' "
+            "poses right?",
+            *misfit.camera + 1, detail::format_short(1e3 * misfit.distance, 3),
+            detail::format_short(1e3 * misfit.others, 3));
+    }
+    if (misfit.is_between_cameras) {
+        return fmt::format(
+            "the cameras do not belong together: half of all corners are missed by over {} px, of "
+            "each camera by itself by {} at most; do all number the corners alike, and is no image "
+            "mirrored?",
+            detail::format_short(1e3 * misfit.distance, 3),
+            detail::format_short(1e3 * misfit.others, 3));
+    }
     return fmt::format(
         "are these of another robot? The nominal robot misses half of them by over {} {}; must be "
         "about {} {}, as the spread of {} says{}{}{}",

@@ -1,0 +1,84 @@
+#include "camera_misfit.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "core/statistics.hpp"
+#include "posewise/calibrator/identification.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
+
+namespace posewise::detail {
+namespace {
+
+struct SingleCampaign {
+    Campaign campaign;
+    Measurements measured;  ///< configurations of which this camera shows anything
+};
+
+/// One camera as if there were no others. Where a further one is follows from its views.
+SingleCampaign single(const Campaign& campaign, const CameraSensor& cameras,
+                      const Measurements& measured, Index c) {
+    CameraSetup setup = cameras.setup();
+    static_cast<SingleCamera&>(setup) = cameras.camera(c);
+    setup.others.clear();
+    if (c > 0 && setup.is_on_flange) setup.known_place.reset();
+    SingleCampaign one{campaign, measured};
+    const auto sensor = std::make_shared<CameraSensor>(std::move(setup));
+    one.campaign.sensor = sensor;
+    one.campaign.nominal.sensor =
+        sensor->unknowns(cameras.place(campaign.nominal.sensor), cameras.camera(c).intrinsics);
+    one.campaign.prior.reset();
+    if (c > 0) one.campaign.has_nominal_base = one.campaign.has_nominal_targets = false;
+    const Index corners = cameras.corner_count();
+    one.measured.observations = measured.observations.middleCols(2 * corners * c, 2 * corners);
+    one.measured.is_seen = measured.is_seen.middleCols(corners * c, corners);
+    std::vector<Index> shown;
+    for (Index i = 0; i < measured.configuration_count(); ++i) {
+        const Index first = measured.first_sample[static_cast<std::size_t>(i)];
+        const auto of_pose = one.measured.is_seen.middleRows(first, measured.sample_count(i));
+        if (of_pose.any()) shown.push_back(i);
+    }
+    one.measured = take(one.measured, shown);
+    return one;
+}
+
+}  // namespace
+
+std::optional<Misfit> find_camera_misfit(const Campaign& campaign, const Measurements& measured,
+                                         const Misfit& misfit) {
+    constexpr double far = 3;
+    const auto* const cameras = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
+    if (cameras == nullptr || cameras->camera_count() == 1) return std::nullopt;
+    std::vector<double> distances;
+    for (Index c = 0; c < cameras->camera_count(); ++c) {
+        const SingleCampaign one = single(campaign, *cameras, measured, c);
+        const Registration registration = register_base_and_targets(one.campaign, one.measured);
+        distances.push_back(
+            registration.is_determined()
+                ? quantile(mean_residuals(one.campaign, registration.parameters, one.measured)
+                               .rowwise()
+                               .norm(),
+                           0.5, QuantileRule::Upper)
+                : std::numeric_limits<double>::infinity());
+    }
+    const auto worst = std::ranges::max_element(distances);
+    const auto c = static_cast<std::size_t>(worst - distances.begin());
+    double others = 0;
+    for (std::size_t k = 0; k < distances.size(); ++k) {
+        if (k != c) others = std::max(others, distances[k]);
+    }
+    Misfit found = misfit;
+    if (*worst > far * others) {
+        found.camera = static_cast<Index>(c);
+        found.distance = *worst;
+        found.others = others;
+        return found;
+    }
+    if (!(misfit.distance > far * *worst)) return std::nullopt;
+    found.is_between_cameras = true;
+    found.others = *worst;
+    return found;
+}
+
+}  // namespace posewise::detail

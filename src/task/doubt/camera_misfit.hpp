@@ -1,0 +1,14 @@
+#pragma once
+
+#include <optional>
+
+#include "posewise/task/doubts.hpp"
+
+namespace posewise::detail {
+
+/// Where several cameras together are missed by `misfit`: whether that is one camera's, or none's
+/// by itself. Nothing: of one camera, or all are missed alike.
+std::optional<Misfit> find_camera_misfit(const Campaign& campaign, const Measurements& measured,
+                                         const Misfit& misfit);
+
+}  // namespace posewise::detail
