@@ -3,6 +3,7 @@
 #include "../../src/calibrator/least_squares.hpp"
 #include "../../src/calibrator/robust.hpp"
 #include "../../src/measurement/feasible.hpp"
+#include "../../src/model/complete_model.hpp"
 #include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
@@ -170,7 +171,8 @@ TEST(Camera, NeedsFewEquationsAView) {
 
 /// What base and tool take up is not the robot's own: of errors of its joints that of the first.
 TEST(Camera, SaysWhatTheRobotAloneIsOffBy) {
-    const Campaign campaign = before_camera(tracked_campaign(fanuc()), fixed_camera());
+    const Chain robot = detail::complete_model(without_parameters(fanuc()));
+    const Campaign campaign = before_camera(tracked_campaign(robot), fixed_camera());
     const RowMatrixXd configurations = detail::random_configurations(campaign.robot, 50, 3);
     const std::vector<std::string> names = campaign.robot.parameter_names();
     Estimate estimate;
@@ -179,6 +181,7 @@ TEST(Camera, SaysWhatTheRobotAloneIsOffBy) {
     estimate.covariance.setZero(parameter_count(campaign), parameter_count(campaign));
     const auto with_error = [&](const std::string& name) {
         const auto k = std::ranges::find(names, name) - names.begin();
+        EXPECT_LT(k, std::ssize(names)) << name;
         estimate.parameters.robot.setZero(std::ssize(names));
         estimate.parameters.robot[k] = 1e-3;
         return expected_robot_error(campaign, estimate, configurations);

@@ -75,7 +75,9 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
 /// Of what is seen in pixels only.
 std::optional<RobotError> predict_robot_alone(const PlanningProblem& problem, const MatrixXd& M) {
     const Campaign& campaign = problem.campaign;
-    if (!campaign.sensor->has_pixels()) return std::nullopt;
+    if (!campaign.sensor->has_pixels() || campaign.robot.parameter_count() == 0) {
+        return std::nullopt;
+    }
     Estimate estimate = uncalibrated(campaign, campaign.nominal);
     const double nominal = expected_robot_error(campaign, estimate, problem.workspace).calibrated;
     const VectorXd scale = parameter_scale(campaign);

@@ -50,6 +50,7 @@ std::optional<WorkspaceError> expected_workspace_error(const Campaign& campaign,
             predict_errors(campaign, estimate, configurations).front().overall, {}, {}};
         if (campaign.sensor->has_pixels()) {
             error.place = expected_place_error(campaign, estimate, configurations);
+            if (campaign.robot.parameter_count() == 0) return error;
             error.robot = expected_robot_error(campaign, estimate, configurations);
         }
         return error;
