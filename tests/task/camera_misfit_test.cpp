@@ -66,6 +66,16 @@ TEST(CameraMisfit, IsOfTheCameraWhoseViewsComeLate) {
     EXPECT_EQ(misfit->camera, 1);
 }
 
+TEST(CameraMisfit, IsNotJudgedOfACameraThatShowsTooLittle) {
+    const auto misfit = misfit_after(rig(), [](Measurements& measured) {
+        measured.configurations.col(2) *= -1;
+        measured.is_seen.bottomRightCorner(measured.is_seen.rows() - 1, corner_count)
+            .setConstant(false);
+    });
+    ASSERT_TRUE(misfit);
+    EXPECT_FALSE(misfit->camera || misfit->is_between_cameras);
+}
+
 TEST(CameraMisfit, IsOfNoneAloneWhereOneNumbersTheBoardFromItsOtherEnd) {
     const Campaign campaign = rig();
     const auto misfit = misfit_after(campaign, [](Measurements& measured) {

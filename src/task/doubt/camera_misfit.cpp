@@ -1,11 +1,11 @@
 #include "camera_misfit.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include "core/statistics.hpp"
 #include "posewise/calibrator/identification.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/measurement/camera_sensor.hpp"
 
 namespace posewise::detail {
@@ -29,7 +29,10 @@ SingleCampaign single(const Campaign& campaign, const CameraSensor& cameras,
     one.campaign.nominal.sensor =
         sensor->unknowns(cameras.place(campaign.nominal.sensor), cameras.camera(c).intrinsics);
     one.campaign.prior.reset();
-    if (c > 0) one.campaign.has_nominal_base = one.campaign.has_nominal_targets = false;
+    if (c > 0) {
+        one.campaign.base_is_known.fill(false);
+        one.campaign.has_nominal_base = one.campaign.has_nominal_targets = false;
+    }
     const Index corners = cameras.corner_count();
     one.measured.observations = measured.observations.middleCols(2 * corners * c, 2 * corners);
     one.measured.is_seen = measured.is_seen.middleCols(corners * c, corners);
@@ -43,6 +46,19 @@ SingleCampaign single(const Campaign& campaign, const CameraSensor& cameras,
     return one;
 }
 
+/// By how much the nominal robot misses half of what it sees, registered by itself; nothing where
+/// it does not see enough for that.
+std::optional<double> distance_of(const SingleCampaign& one) {
+    try {
+        const Registration found = register_base_and_targets(one.campaign, one.measured);
+        if (!found.is_determined()) return std::nullopt;
+        const RowMatrixXd left = mean_residuals(one.campaign, found.parameters, one.measured);
+        return quantile(left.rowwise().norm(), 0.5, QuantileRule::Upper);
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+}
+
 }  // namespace
 
 std::optional<Misfit> find_camera_misfit(const Campaign& campaign, const Measurements& measured,
@@ -52,15 +68,9 @@ std::optional<Misfit> find_camera_misfit(const Campaign& campaign, const Measure
     if (cameras == nullptr || cameras->camera_count() == 1) return std::nullopt;
     std::vector<double> distances;
     for (Index c = 0; c < cameras->camera_count(); ++c) {
-        const SingleCampaign one = single(campaign, *cameras, measured, c);
-        const Registration registration = register_base_and_targets(one.campaign, one.measured);
-        distances.push_back(
-            registration.is_determined()
-                ? quantile(mean_residuals(one.campaign, registration.parameters, one.measured)
-                               .rowwise()
-                               .norm(),
-                           0.5, QuantileRule::Upper)
-                : std::numeric_limits<double>::infinity());
+        const auto distance = distance_of(single(campaign, *cameras, measured, c));
+        if (!distance) return std::nullopt;
+        distances.push_back(*distance);
     }
     const auto worst = std::ranges::max_element(distances);
     const auto c = static_cast<std::size_t>(worst - distances.begin());
