@@ -10,7 +10,7 @@ namespace posewise::detail {
 namespace {
 
 constexpr int iteration_limit = 100;
-constexpr double size_tolerance = 0.005;  // of a size, to end at
+constexpr double size_tolerance = 0.005;  // a relative step of a size to end at
 
 const double log_size_factor = std::log(error_size_factor);
 

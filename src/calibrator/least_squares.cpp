@@ -40,13 +40,8 @@ void check_size(const Campaign& campaign, const Measurements& measurements) {
     }
 }
 
-/// Of the flange's six ways to move, the sensor's unknowns and the residual.
-Index narrow_width(const Sensor& sensor) { return 7 + std::ssize(sensor.unknown_names()); }
-
-bool pays_narrowly(const Sensor& sensor) {
-    const bool has_one_kind = !(sensor.has_lengths() && sensor.has_angles());
-    return has_one_kind && sensor.row_count() >= 2 * narrow_width(sensor);
-}
+/// Columns for the flange's six ways to move, the sensor's unknowns and the residual.
+Index narrow_width(const Parameters& parameters) { return 7 + parameters.sensor.size(); }
 
 /// Of one configuration after another what the measurements tell, in memory that it takes once.
 class Configurations {
@@ -72,8 +67,8 @@ class Configurations {
         return finish(i, parameters, all);
     }
 
-    /// The same in no more than narrow_width() rows. J = A E, with the derivative A of the readings
-    /// by six ways in which the flange may move and by the sensor's unknowns (WhitenedPose). With
+    /// Does the same in no more than narrow_width() rows. J = A E (WhitenedPose), where A is the
+    /// readings' derivative by the flange's six ways to move and by the sensor's unknowns. With
     /// [A r] = Q [R z; 0 s] whitened and weighted, |J d - r|^2 = |R E d - z|^2 + s^2.
     Index state_narrowly(Index i, const Parameters& parameters, Eigen::Ref<RowMatrixXd> all) {
         go_to(i);
@@ -94,7 +89,7 @@ class Configurations {
         return R.rows();
     }
 
-    /// The same as state() with other columns in the place of J.
+    /// Does the same as state() with other columns in the place of J.
     Index state_columns(Index i, const Parameters& parameters, const FillColumns& fill,
                         Eigen::Ref<RowMatrixXd> all) {
         go_to(i);
@@ -102,7 +97,7 @@ class Configurations {
         fill(i, all.leftCols(all.cols() - 1));
         return finish(i, parameters, all);
     }
-    /// The sum of squares of the whitened residuals, so found more quickly.
+    /// Returns the sum of squares of the whitened residuals; quicker than measure().
     double square(Index i, const Parameters& parameters, const Parameters& of_noise) {
         go_to(i);
         place_flange(parameters);
@@ -183,6 +178,11 @@ class Configurations {
 
 }  // namespace
 
+bool pays_narrowly(const Sensor& sensor, const Parameters& parameters) {
+    const bool is_wide = sensor.row_count() >= 2 * narrow_width(parameters);
+    return is_wide && !(sensor.has_lengths() && sensor.has_angles());
+}
+
 std::string describe_unseen_target(const Campaign& campaign, const Measurements& measurements) {
     if (campaign.prior && campaign.prior->has_sensor) return "";
     const Sensor& sensor = *campaign.sensor;
@@ -229,8 +229,9 @@ LinearisedSystem linearise(const IdentificationProblem& problem, const Parameter
                            Equations equations) {
     const Campaign& campaign = problem.campaign;
     const Index size = problem.units.size();
-    const bool is_narrow = equations == Equations::Fewest && pays_narrowly(*campaign.sensor);
-    const Index width = is_narrow ? narrow_width(*campaign.sensor) : campaign.sensor->row_count();
+    const bool is_narrow =
+        equations == Equations::Fewest && pays_narrowly(*campaign.sensor, parameters);
+    const Index width = is_narrow ? narrow_width(parameters) : campaign.sensor->row_count();
     Configurations configurations(problem);
     const Index most = std::min(problem.observation_count(), width * configurations.count());
     const Index count = problem.prior_count();
@@ -288,7 +289,8 @@ VectorXd residual_lengths(const IdentificationProblem& problem, const Parameters
 double total_loss(const IdentificationProblem& problem, const Parameters& parameters,
                   const Parameters* noise_at) {
     double sum = 0;
-    if (problem.loss.kind == LossKind::Squares && pays_narrowly(*problem.campaign.sensor)) {
+    if (problem.loss.kind == LossKind::Squares &&
+        pays_narrowly(*problem.campaign.sensor, parameters)) {
         Configurations configurations(problem);
         for (Index i = 0; i < configurations.count(); ++i) {
             sum +=

@@ -13,7 +13,7 @@ namespace posewise::detail {
 /// of a target are multiplied by the square root of its weight under the loss.
 struct LinearisedSystem {
     RowMatrixXd augmented;            ///< equations x (L + 1): J, then r
-    std::vector<Index> first_row{0};  ///< of each configuration, and one more, the prior's
+    std::vector<Index> first_row{0};  ///< one for each configuration, then the prior's
 
     auto J() const { return augmented.leftCols(augmented.cols() - 1); }
     auto r() const { return augmented.col(augmented.cols() - 1); }  ///< observed less predicted
@@ -57,6 +57,9 @@ enum class Equations {
     Fewest,
     All,  ///< one for each number observed
 };
+
+/// Whether the fewest equations are at most half as many as the numbers observed.
+bool pays_narrowly(const Sensor& sensor, const Parameters& parameters);
 
 LinearisedSystem linearise(const IdentificationProblem& problem, const Parameters& parameters,
                            Equations equations = Equations::Fewest);

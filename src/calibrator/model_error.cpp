@@ -29,8 +29,8 @@ const double log_factor = std::log(model_error_factor);
 /// log of the model error's translation and rotation.
 using LogErrors = std::array<double, 2>;
 
-/// The readings of a configuration that are far more than what moves them, x: they are
-/// basis x + rest, x with variance 1, beside errors with the covariance `remainder`.
+/// How a configuration's readings follow from far fewer numbers x with variance 1: they are
+/// basis x + rest, beside errors with the covariance `remainder`.
 struct Narrowed {
     MatrixXd basis;
     VectorXd rest;
@@ -80,8 +80,7 @@ class PredictiveScore {
         effects_.resize(most_rows, 6);
         RowMatrixXd all(sensor.row_count(), size_ + 1);
         RowMatrixXd effect = RowMatrixXd::Zero(sensor.row_count(), 6);
-        const Index narrow_width = 6 + parameters.sensor.size();
-        const bool is_narrow = sensor.has_pixels() && sensor.row_count() >= 2 * narrow_width;
+        const bool is_narrow = sensor.has_pixels() && pays_narrowly(sensor, parameters);
         PoseNoise noise(without);
         FlangeMotion motion;
         VectorXd q, repeats, predicted(sensor.row_count()), deviation(sensor.row_count());
@@ -100,7 +99,7 @@ class PredictiveScore {
             }
             const MatrixXd& covariance = noise.covariance(motion, parameters.sensor, repeats);
             if (is_narrow) {
-                RowMatrixXd A(sensor.row_count(), narrow_width);
+                RowMatrixXd A(sensor.row_count(), 6 + parameters.sensor.size());
                 sensor.differentiate(motion.world_from_flange, TwistMatrix::Identity(6, 6),
                                      parameters.sensor, A);
                 row += take_narrowly(A(noise.rows(), Eigen::all), deviation(noise.rows()),
@@ -133,9 +132,9 @@ class PredictiveScore {
         if (common_ > 0) factors_.resize(row, sensor.row_count());
     }
 
-    /// One configuration's rows from `row` on, as few as tell the same; returns how many. With the
-    /// readings' derivative A and residual r (WhitenedPose) and L^-1 A = Q R, covariance = L L^T:
-    /// x = Q^T L^-1 r and R E. What the flange moves is within these, the rest stays as it is.
+    /// Writes one configuration in as few rows as tell the same, from `row` on; returns how many.
+    /// With the readings' derivative A and residual r (WhitenedPose), L L^T = covariance and
+    /// L^-1 A = Q R these are R E and x = Q^T L^-1 r. All that the flange moves is within them.
     Index take_narrowly(const RowMatrixXd& A, const VectorXd& r, const MatrixXd& covariance,
                         const TwistMatrix& twists, const TwistMatrix& moves, Index row) {
         const auto L = cholesky_factor(covariance);
@@ -156,11 +155,11 @@ class PredictiveScore {
     }
 
     Index row_count() const { return stated_.rows(); }
-    /// Calls visit(first row, how many) for each configuration.
+    /// Calls visit(configuration, first row, how many) for each.
     template <typename Visit>
     void for_each_configuration(const Visit& visit) const {
         for (std::size_t i = 0; i + 1 < first_row_.size(); ++i) {
-            visit(first_row_[i], first_row_[i + 1] - first_row_[i]);
+            visit(i, first_row_[i], first_row_[i + 1] - first_row_[i]);
         }
     }
 
@@ -169,7 +168,7 @@ class PredictiveScore {
         const std::array<double, 2> squares{std::exp(2 * errors[0]), std::exp(2 * errors[1])};
         whitened_ = stated_;
         log_deviations_ = 0;
-        for_each_configuration([&](Index first, Index count) {
+        for_each_configuration([&](std::size_t, Index first, Index count) {
             covariance_ = covariances_.block(first, 0, count, count);
             if (common_ > 0) {
                 const auto moved = effects_.middleRows(first, count);
@@ -233,9 +232,7 @@ class PredictiveScore {
     double predict() {
         if (V_.cols() < row_count()) return -std::numeric_limits<double>::infinity();
         double score = -log_deviations_;
-        std::size_t next = 0;
-        for_each_configuration([&](Index first, Index count) {
-            const std::size_t configuration = next++;
+        for_each_configuration([&](std::size_t configuration, Index first, Index count) {
             const auto V_i = V_.middleCols(first, count);
             factor_.noalias() = -V_i.transpose() * V_i;
             factor_.diagonal().array() += 1 + undetermined;
@@ -313,7 +310,7 @@ class PredictiveScore {
     RowMatrixXd stated_;       ///< Jacobian by scaled parameters and residual, not whitened
     RowMatrixXd covariances_;  ///< but for the model error, of each as many columns as it has rows
     RowMatrixXd effects_;      ///< derivative by model_error_twists(), 6 columns
-    std::vector<Narrowed> narrowed_;  ///< of each; empty where all readings have rows
+    std::vector<Narrowed> narrowed_;  ///< one for each; empty where all readings have rows
 
     // The same under one pair of model errors.
     RowMatrixXd whitened_;

@@ -22,13 +22,8 @@ void WhitenedPose::place(const FlangeMotion& motion, const VectorXd& unknowns,
         R_ = A_;
     }
     C_ = flange_covariance(campaign_, motion, unknowns);
-    const auto R_6 = R_.leftCols<6>();
-    MatrixXd shared = MatrixXd::Identity(R_.rows(), R_.rows());
-    const MatrixXd by_flange = R_6 * C_ * R_6.transpose();
-    raise_to_rounding(shared, by_flange.trace());
-    shared += by_flange;
     // K itself, which slopes() needs, of one row as well: whiten() keeps none of a diagonal.
-    cholesky_factor(shared, K_);
+    cholesky_factor(with_flange_motion(R_.leftCols<6>(), C_), K_);
     narrow_ = R_;
     K_.triangularView<Eigen::Lower>().solveInPlace(narrow_);
 }

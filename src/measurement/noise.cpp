@@ -304,13 +304,18 @@ RowMatrixXd PoseNoise::triangle_of_seen(const FlangeMotion& motion, const Vector
     const Index count = take_seen(rows);
     whiten(own, rows.topRows(count), factor_);
     RowMatrixXd R = triangular_factor(rows.topRows(count));
-    const auto R_6 = R.leftCols<6>();
-    const MatrixXd by_flange =
-        R_6 * flange_covariance(campaign_, motion, sensor_unknowns) * R_6.transpose();
-    MatrixXd shared = MatrixXd::Identity(R.rows(), R.rows());
-    raise_to_rounding(shared, by_flange.trace());
-    whiten(shared + by_flange, R);
+    whiten(
+        with_flange_motion(R.leftCols<6>(), flange_covariance(campaign_, motion, sensor_unknowns)),
+        R);
     return R;
+}
+
+MatrixXd with_flange_motion(const Eigen::Ref<const MatrixXd>& R_6, const Matrix6d& C) {
+    MatrixXd shared = MatrixXd::Identity(R_6.rows(), R_6.rows());
+    const MatrixXd by_flange = R_6 * C * R_6.transpose();
+    raise_to_rounding(shared, by_flange.trace());
+    shared += by_flange;
+    return shared;
 }
 
 MatrixXd cholesky_factor(const MatrixXd& covariance) {

@@ -85,10 +85,9 @@ class PoseNoise {
     Index whiten_seen(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
                       const VectorXd& repeats, Eigen::Ref<RowMatrixXd> rows);
 
-    /// The same reduced to a triangle by reflections, of as many rows as columns. The first six
-    /// columns must be the observation's derivative by the flange's motions, so that what these
-    /// share needs no more than the triangle: K^-1 R where the rows whitened by own_covariance()
-    /// are Q R and K K^T = I + R_6 C R_6^T, C the flange_covariance().
+    /// Reduces the same to a triangle, K^-1 R: the rows whitened by own_covariance() are Q R, and
+    /// K K^T = with_flange_motion(R_6, flange_covariance()). The first six columns of `rows`, R_6
+    /// of R, must be the observation's derivative by the flange's motions.
     RowMatrixXd triangle_of_seen(const FlangeMotion& motion, const VectorXd& sensor_unknowns,
                                  const VectorXd& repeats, Eigen::Ref<RowMatrixXd> rows);
 
@@ -109,6 +108,10 @@ class PoseNoise {
     RowMatrixXd seen_effect_;
     MatrixXd factor_;
 };
+
+/// I + R_6 C R_6^T: covariance of numbers whose own errors are whitened, where R_6 is their
+/// derivative by the flange's motions, which have the covariance C.
+MatrixXd with_flange_motion(const Eigen::Ref<const MatrixXd>& R_6, const Matrix6d& C);
 
 /// Before a product of columns and their transpose is added, which has that trace: where rounding
 /// would leave nothing of the covariance, as beside a camera's lens, it counts as large as that.

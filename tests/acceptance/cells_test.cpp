@@ -7,8 +7,8 @@
 #include "../../src/planner/refinement.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/planner/planning.hpp"
+#include "support/campaign_from.hpp"
 #include "support/cell_recheck.hpp"
-#include "support/places.hpp"
 #include "support/sweep.hpp"
 
 namespace posewise {
@@ -82,7 +82,7 @@ cell:
 
 io::CampaignFile cell_of(const std::string& text) {
     if (!text.empty()) return io::parse_campaign(text, "cell.yaml");
-    return io::read_campaign(source_folder() + "/designs/cell_demo/campaign.yaml");
+    return design_campaign("cell_demo/campaign.yaml");
 }
 
 /// Rows from `first` on that are apart from each other, refined for D beside a prior.

@@ -8,10 +8,10 @@
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/measurements.hpp"
+#include "support/campaign_from.hpp"
 #include "support/cell_recheck.hpp"
 #include "support/fanuc_planning.hpp"
 #include "support/parameter_error.hpp"
-#include "support/places.hpp"
 #include "support/sweep.hpp"
 
 namespace posewise {
@@ -20,9 +20,7 @@ namespace {
 using namespace detail;
 using namespace testing;
 
-io::CampaignFile demo() {
-    return io::read_campaign(source_folder() + "/designs/cell_demo/campaign.yaml");
-}
+io::CampaignFile demo() { return design_campaign("cell_demo/campaign.yaml"); }
 
 /// The demonstration cell where each pose must show all targets, as calibrate needs them.
 io::CampaignFile demo_showing_all() {

@@ -51,6 +51,10 @@ class Edited {
     std::string path_;
 };
 
+void expect_refused(const Edited& edited, const std::string& words) {
+    EXPECT_NE(edited.error().find(words), std::string::npos) << edited.error();
+}
+
 TEST(EditedPrograms, AreReadAsTheyCameFromThePendant) {
     // A pendant names positions, a comment is added, a move dropped.
     EXPECT_EQ(Edited(ProgramFormat::Fanuc)
@@ -69,59 +73,67 @@ TEST(EditedPrograms, AreReadAsTheyCameFromThePendant) {
 }
 
 TEST(EditedPrograms, AreRefusedWhereTheyDoNotStop) {
-    const auto expect = [](const Edited& edited, const std::string& words) {
-        EXPECT_NE(edited.error().find(words), std::string::npos) << edited.error();
-    };
-    expect(Edited(ProgramFormat::Kuka).replace("\nEND\n", "\n"), "has no END; must be the whole");
-    expect(Edited(ProgramFormat::Abb).replace("ENDMODULE", ""), "has no ENDMODULE");
-    expect(Edited(ProgramFormat::Yaskawa).replace("\nEND", "\n"), "has no END");
-    expect(Edited(ProgramFormat::Fanuc).replace("J P[2] 20% FINE", "J P[2] 20% FINE Offset,PR[1]"),
-           "must have none but ACC");
-    expect(Edited(ProgramFormat::Fanuc).replace("J P[2] 20% FINE", "J P[2] 20% CNT50"),
-           "CELL.LS:12:6: does not stop");
-    expect(Edited(ProgramFormat::Fanuc).replace("J P[2]", "L P[2]"), "is no joint move");
-    expect(Edited(ProgramFormat::Fanuc).replace("J P[2]", "J P[22]"), "without joints");
-    expect(Edited(ProgramFormat::Fanuc).replace("/POS", "/NOPOS"), "has no /POS");
-    expect(Edited(ProgramFormat::Fanuc).replace("J1= ", "J1= x"), "is not a number");
-    expect(Edited(ProgramFormat::Kuka).replace("}\nWAIT", "} C_PTP\nWAIT"), "does not stop");
-    expect(Edited(ProgramFormat::Kuka).replace("PTP {A1", "LIN {A1"), "is no joint move");
-    expect(Edited(ProgramFormat::Kuka).replace("PTP {A1", "PTP {A2"), "where A1 must be");
-    expect(Edited(ProgramFormat::Abb).replace("fine", "z10"), "does not stop");
-    expect(Edited(ProgramFormat::Abb).replace("MoveAbsJ", "MoveJ"), "is no move to joints");
-    expect(Edited(ProgramFormat::Ur).replace("r=0)", "r=0.05)"), "does not stop");
-    expect(Edited(ProgramFormat::Ur).replace("movej([", "movej(p["), "is no joint move to numbers");
-    expect(Edited(ProgramFormat::Yaskawa).replace("PL=0", "PL=3"), "does not stop");
-    expect(Edited(ProgramFormat::Yaskawa).replace("POSTYPE PULSE", "POSTYPE ROBOT"), "PULSE");
-    expect(Edited(ProgramFormat::Yaskawa).replace("MOVJ C00001", "MOVJ C00099"), "does not state");
-    expect(Edited(ProgramFormat::Staubli).replace("joints[1]", "joints[9]", "/start.pgx"),
-           "data have none of");
-    expect(Edited(ProgramFormat::Staubli).replace("j6=\"", "j7=\"", "/cell.dtx"), "5 joints");
-    expect(Edited(ProgramFormat::Ros2).replace("J1", "J9"), "no joint of the controller");
-    expect(Edited(ProgramFormat::Ros2).replace("positions: [", "positions: [.nan, "), "positions");
-    expect(Edited(ProgramFormat::Csv).replace("J1_deg", "J9_deg"), "'J1_deg' is missing");
-    expect(Edited(ProgramFormat::Csv).replace("home,", "home,nan"), "not a number");
+    expect_refused(Edited(ProgramFormat::Kuka).replace("\nEND\n", "\n"),
+                   "has no END; must be the whole");
+    expect_refused(Edited(ProgramFormat::Abb).replace("ENDMODULE", ""), "has no ENDMODULE");
+    expect_refused(Edited(ProgramFormat::Yaskawa).replace("\nEND", "\n"), "has no END");
+    expect_refused(
+        Edited(ProgramFormat::Fanuc).replace("J P[2] 20% FINE", "J P[2] 20% FINE Offset,PR[1]"),
+        "must have none but ACC");
+    expect_refused(Edited(ProgramFormat::Fanuc).replace("J P[2] 20% FINE", "J P[2] 20% CNT50"),
+                   "CELL.LS:12:6: does not stop");
+    expect_refused(Edited(ProgramFormat::Fanuc).replace("J P[2]", "L P[2]"), "is no joint move");
+    expect_refused(Edited(ProgramFormat::Fanuc).replace("J P[2]", "J P[22]"), "without joints");
+    expect_refused(Edited(ProgramFormat::Fanuc).replace("/POS", "/NOPOS"), "has no /POS");
+    expect_refused(Edited(ProgramFormat::Fanuc).replace("J1= ", "J1= x"), "is not a number");
+    expect_refused(Edited(ProgramFormat::Kuka).replace("}\nWAIT", "} C_PTP\nWAIT"),
+                   "does not stop");
+    expect_refused(Edited(ProgramFormat::Kuka).replace("PTP {A1", "LIN {A1"), "is no joint move");
+    expect_refused(Edited(ProgramFormat::Kuka).replace("PTP {A1", "PTP {A2"), "where A1 must be");
+    expect_refused(Edited(ProgramFormat::Abb).replace("fine", "z10"), "does not stop");
+    expect_refused(Edited(ProgramFormat::Abb).replace("MoveAbsJ", "MoveJ"), "is no move to joints");
+    expect_refused(Edited(ProgramFormat::Ur).replace("r=0)", "r=0.05)"), "does not stop");
+    expect_refused(Edited(ProgramFormat::Ur).replace("movej([", "movej(p["),
+                   "is no joint move to numbers");
+    expect_refused(Edited(ProgramFormat::Yaskawa).replace("PL=0", "PL=3"), "does not stop");
+    expect_refused(Edited(ProgramFormat::Yaskawa).replace("POSTYPE PULSE", "POSTYPE ROBOT"),
+                   "PULSE");
+    expect_refused(Edited(ProgramFormat::Yaskawa).replace("MOVJ C00001", "MOVJ C00099"),
+                   "does not state");
+    expect_refused(Edited(ProgramFormat::Staubli).replace("joints[1]", "joints[9]", "/start.pgx"),
+                   "data have none of");
+    expect_refused(Edited(ProgramFormat::Staubli).replace("j6=\"", "j7=\"", "/cell.dtx"),
+                   "5 joints");
+    expect_refused(Edited(ProgramFormat::Ros2).replace("J1", "J9"), "no joint of the controller");
+    expect_refused(Edited(ProgramFormat::Ros2).replace("positions: [", "positions: [.nan, "),
+                   "positions");
+    expect_refused(Edited(ProgramFormat::Csv).replace("J1_deg", "J9_deg"), "'J1_deg' is missing");
+    expect_refused(Edited(ProgramFormat::Csv).replace("home,", "home,nan"), "not a number");
 }
 
 TEST(EditedPrograms, AreRefusedWhereTheyAreSpoilt) {
-    const auto expect = [](const Edited& edited, const std::string& words) {
-        EXPECT_NE(edited.error().find(words), std::string::npos) << edited.error();
-    };
-    expect(Edited(ProgramFormat::Ur).replace("r=0)", "r=0"), "has no ) at its end");
-    expect(Edited(ProgramFormat::Ur).replace("r=0)", "r=0, t=-5)"),
-           "has 't=-5'; must not be below");
-    expect(Edited(ProgramFormat::Abb).replace("tool0;", "tool0"), "has no ; at its end");
-    expect(Edited(ProgramFormat::Yaskawa).replace("NPOS ", "NPOS 1"), "lines were lost or added");
-    expect(Edited(ProgramFormat::Yaskawa).replace("VJ=20.00", "VJ=0.00"), "must be above 0");
-    expect(Edited(ProgramFormat::Ros2).replace("named_states:", "states:"), "named_states");
+    expect_refused(Edited(ProgramFormat::Ur).replace("r=0)", "r=0"), "has no ) at its end");
+    expect_refused(Edited(ProgramFormat::Ur).replace("r=0)", "r=0, t=-5)"),
+                   "has 't=-5'; must not be below");
+    expect_refused(Edited(ProgramFormat::Abb).replace("tool0;", "tool0"), "has no ; at its end");
+    expect_refused(Edited(ProgramFormat::Yaskawa).replace("NPOS ", "NPOS 1"),
+                   "lines were lost or added");
+    expect_refused(Edited(ProgramFormat::Yaskawa).replace("VJ=20.00", "VJ=0.00"),
+                   "must be above 0");
+    expect_refused(Edited(ProgramFormat::Ros2).replace("named_states:", "states:"), "named_states");
+    const Edited cut(ProgramFormat::Ros2);
+    const std::string whole = detail::read_file(cut.path());
+    detail::write_file(cut.path(), whole.substr(0, whole.find("named_states:")));
+    expect_refused(cut, "has no named_states at its end");
     // A slip in the word of a move.
     const std::string slip = "as a move has, but is none that is known";
-    expect(Edited(ProgramFormat::Fanuc).replace("J P[2]", "K P[2]"), slip);
-    expect(Edited(ProgramFormat::Kuka).replace("PTP {A1", "PPT {A1"), slip);
-    expect(Edited(ProgramFormat::Abb).replace("MoveAbsJ", "MovAbsJ"), slip);
-    expect(Edited(ProgramFormat::Ur).replace("movej([", "mvej(["), slip);
-    expect(Edited(ProgramFormat::Yaskawa).replace("MOVJ", "MOJV"), slip);
-    expect(Edited(ProgramFormat::Staubli).replace("movej(joints", "mvej(joints", "/start.pgx"),
-           slip);
+    expect_refused(Edited(ProgramFormat::Fanuc).replace("J P[2]", "K P[2]"), slip);
+    expect_refused(Edited(ProgramFormat::Kuka).replace("PTP {A1", "PPT {A1"), slip);
+    expect_refused(Edited(ProgramFormat::Abb).replace("MoveAbsJ", "MovAbsJ"), slip);
+    expect_refused(Edited(ProgramFormat::Ur).replace("movej([", "mvej(["), slip);
+    expect_refused(Edited(ProgramFormat::Yaskawa).replace("MOVJ", "MOJV"), slip);
+    expect_refused(
+        Edited(ProgramFormat::Staubli).replace("movej(joints", "mvej(joints", "/start.pgx"), slip);
 }
 
 /// The example's poses as a plan, v1 to verify.
@@ -166,38 +178,46 @@ TEST(EditedPrograms, NameWhatIsMissingMovedAndNew) {
 
 TEST(EditedPrograms, AreRefusedWhereMovesMayBePassedOver) {
     using enum ProgramFormat;
-    const auto expect = [](const Edited& edited, const std::string& words) {
-        EXPECT_NE(edited.error().find(words), std::string::npos) << edited.error();
-    };
     const std::string jumps = ": jumps, so that moves may be passed over or repeated";
-    expect(Edited(Fanuc).replace("  !p1 ;", "  JMP LBL[1] ;"), "CELL.LS:11:8" + jumps);
-    expect(Edited(Fanuc).replace("  !p1 ;", "  IF DI[1]=ON,JMP LBL[1] ;"), jumps);
-    expect(Edited(Fanuc).replace("WAIT   2.00(sec)", "WAIT DI[1]=ON TIMEOUT,LBL[1]"), jumps);
-    expect(
+    expect_refused(Edited(Fanuc).replace("  !p1 ;", "  JMP LBL[1] ;"), "CELL.LS:11:8" + jumps);
+    expect_refused(Edited(Fanuc).replace("  !p1 ;", "  IF DI[1]=ON,JMP LBL[1] ;"), jumps);
+    expect_refused(Edited(Fanuc).replace("WAIT   2.00(sec)", "WAIT DI[1]=ON TIMEOUT,LBL[1]"),
+                   jumps);
+    expect_refused(
         Edited(Fanuc).replace("  !p1 ;", "  FOR R[1]=1 TO 5 ;").replace("  !via ;", "  ENDFOR ;"),
         "CELL.LS:12:6: moves within 'FOR' of line 11, which may pass it over or repeat it");
-    expect(Edited(Fanuc).replace("  !p1 ;", "  IF (DI[1]) THEN ;").replace("  !via ;", "  ENDIF ;"),
-           "moves within 'IF'");
-    expect(Edited(Fanuc).replace("  !p1 ;", "  END ;"), "moves after line 11, 'END', which leaves");
-    expect(Edited(Kuka).replace("; p1", "GOTO there"), "cell.src:11:1" + jumps);
-    expect(Edited(Kuka).replace("; p1", "IF $IN[1] THEN").replace("; via", "ENDIF"), "within 'IF'");
-    expect(Edited(Kuka).replace("; p1", "LOOP").replace("; via", "ENDLOOP"), "within 'LOOP'");
-    expect(Edited(Kuka).replace("; p1", "END\nDEF other( )"), "in another routine");
-    expect(Edited(Abb).replace("! p1", "GOTO there;"), "cell.mod:7:5" + jumps);
-    expect(Edited(Abb).replace("! p1", "IF di1=1 THEN").replace("! via", "ENDIF"), "within 'IF'");
-    expect(Edited(Abb).replace("! p1", "FOR i FROM 1 TO 3 DO").replace("! via", "ENDFOR"), "'FOR'");
-    expect(Edited(Abb).replace("! p1\r\n    Move", "IF di1=1 Move"), "moves under a condition");
-    expect(Edited(Abb).replace("! p1", "RETURN;"), "which leaves the routine");
-    expect(Edited(Ur).replace("# p1", "if get_digital_in(1):").replace("# via", "end"), "'if'");
-    expect(Edited(Ur).replace("# p1", "while True:").replace("# via", "end"), "within 'while'");
-    expect(Edited(Ur).replace("\nend\n", "\n"), "cell.script:1:1: does not end");
-    expect(Edited(Ur).replace("  movej", "  MOVEJ"), "tells capitals apart; must be movej");
-    expect(Edited(Yaskawa).replace("'p1", "JUMP *AGAIN"), jumps);
-    expect(Edited(Yaskawa).replace("'p1", "IFTHEN IN#(1)=ON").replace("'via", "ENDIF"), "'IFTHEN'");
-    expect(Edited(Staubli)
-               .replace("// p1", "if dIn", "/start.pgx")
-               .replace("// via", "endIf", "/start.pgx"),
-           "within 'if'");
+    expect_refused(
+        Edited(Fanuc).replace("  !p1 ;", "  IF (DI[1]) THEN ;").replace("  !via ;", "  ENDIF ;"),
+        "moves within 'IF'");
+    expect_refused(Edited(Fanuc).replace("  !p1 ;", "  END ;"),
+                   "moves after line 11, 'END', which leaves");
+    expect_refused(Edited(Kuka).replace("; p1", "GOTO there"), "cell.src:11:1" + jumps);
+    expect_refused(Edited(Kuka).replace("; p1", "IF $IN[1] THEN").replace("; via", "ENDIF"),
+                   "within 'IF'");
+    expect_refused(Edited(Kuka).replace("; p1", "LOOP").replace("; via", "ENDLOOP"),
+                   "within 'LOOP'");
+    expect_refused(Edited(Kuka).replace("; p1", "END\nDEF other( )"), "in another routine");
+    expect_refused(Edited(Abb).replace("! p1", "GOTO there;"), "cell.mod:7:5" + jumps);
+    expect_refused(Edited(Abb).replace("! p1", "IF di1=1 THEN").replace("! via", "ENDIF"),
+                   "within 'IF'");
+    expect_refused(Edited(Abb).replace("! p1", "FOR i FROM 1 TO 3 DO").replace("! via", "ENDFOR"),
+                   "'FOR'");
+    expect_refused(Edited(Abb).replace("! p1\r\n    Move", "IF di1=1 Move"),
+                   "moves under a condition");
+    expect_refused(Edited(Abb).replace("! p1", "RETURN;"), "which leaves the routine");
+    expect_refused(Edited(Ur).replace("# p1", "if get_digital_in(1):").replace("# via", "end"),
+                   "'if'");
+    expect_refused(Edited(Ur).replace("# p1", "while True:").replace("# via", "end"),
+                   "within 'while'");
+    expect_refused(Edited(Ur).replace("\nend\n", "\n"), "cell.script:1:1: does not end");
+    expect_refused(Edited(Ur).replace("  movej", "  MOVEJ"), "tells capitals apart; must be movej");
+    expect_refused(Edited(Yaskawa).replace("'p1", "JUMP *AGAIN"), jumps);
+    expect_refused(Edited(Yaskawa).replace("'p1", "IFTHEN IN#(1)=ON").replace("'via", "ENDIF"),
+                   "'IFTHEN'");
+    expect_refused(Edited(Staubli)
+                       .replace("// p1", "if dIn", "/start.pgx")
+                       .replace("// via", "endIf", "/start.pgx"),
+                   "within 'if'");
     // What encloses no move is read, as the handshake's loops are.
     for (const auto& [format, what, by] :
          {std::tuple{Fanuc, "  !p2 ;", "  IF R[1]=1,CALL LAMP ;\n  99:  !p2 ;\n  99:  LBL[3] ;"},
@@ -210,23 +230,23 @@ TEST(EditedPrograms, AreRefusedWhereMovesMayBePassedOver) {
 
 TEST(EditedPrograms, MoveNoAxisThatThePlanDoesNotKnow) {
     using enum ProgramFormat;
-    const auto expect = [](const Edited& edited, const std::string& words) {
-        EXPECT_NE(edited.error().find(words), std::string::npos) << edited.error();
-    };
-    expect(Edited(Kuka).replace("}\n; p1", ",E1 120.5}\n; p1"),
-           "cell.src:10:1: has 'E1 120.5', an axis that is not of the robot's joints; must be 0");
+    expect_refused(
+        Edited(Kuka).replace("}\n; p1", ",E1 120.5}\n; p1"),
+        "cell.src:10:1: has 'E1 120.5', an axis that is not of the robot's joints; must be 0");
     EXPECT_EQ(Edited(Kuka).replace("}\n; p1", ",E1 0.0,E2 0}\n; p1").labels().size(), 6U);
-    expect(Edited(Abb).replace("[9E9,", "[35.5,"), "moves an external axis to 35.5");
+    expect_refused(Edited(Abb).replace("[9E9,", "[35.5,"), "moves an external axis to 35.5");
     EXPECT_EQ(Edited(Abb).replace("[9E9,9E9,", "[9E+09,0,").labels().size(), 6U);
     const std::string last = "J6=     0.000 deg\n";
-    expect(Edited(Fanuc).replace(last, "J6=     0.000 deg,\n\tE1=    12.500 mm\n"),
-           "has E1 at 12.500, an axis");
+    expect_refused(Edited(Fanuc).replace(last, "J6=     0.000 deg,\n\tE1=    12.500 mm\n"),
+                   "has E1 at 12.500, an axis");
     EXPECT_EQ(
         Edited(Fanuc).replace(last, "J6=     0.000 deg,\n\tE1=     0.000 mm\n").labels().size(),
         6U);
-    expect(Edited(Fanuc).replace(last, last + "   GP2:\n\tUF : 0, UT : 1,\n\tJ1= 5.0 deg\n"),
-           "has J1 at 5.0");
-    expect(Edited(Yaskawa).replace("C00001 VJ", "C00001 EC00001 VJ"), "must have none but VJ");
+    expect_refused(
+        Edited(Fanuc).replace(last, last + "   GP2:\n\tUF : 0, UT : 1,\n\tJ1= 5.0 deg\n"),
+        "has J1 at 5.0");
+    expect_refused(Edited(Yaskawa).replace("C00001 VJ", "C00001 EC00001 VJ"),
+                   "must have none but VJ");
 }
 
 TEST(EditedPrograms, AreReadStatementByStatement) {

@@ -231,7 +231,7 @@ class Sensor {
     virtual void view_clearances(const Isometry3d& /*world_from_flange*/,
                                  const VectorXd& /*unknowns*/,
                                  Eigen::Ref<VectorXd> /*clearances*/) const {}
-    /// For a sensor with a view: whether it may read this of a target, as inside of an image.
+    /// Whether a sensor with a view may read these numbers of a target: inside of an image.
     virtual bool is_readable(Index /*target*/, const ConstNumbers& /*observation*/) const {
         return true;
     }

@@ -248,7 +248,7 @@ struct Misfit {
     double expected = 0;  ///< by the spread, m
     std::vector<PlaneDoubt> planes;
     std::optional<BetterReading> reading;  ///< for joints, lengths or orientations
-    /// Of several cameras the one, from 0, that by itself is missed by `distance`.
+    /// The camera at fault, from 0, where one of several is: by itself it is missed by `distance`.
     std::optional<Index> camera{};
     bool is_between_cameras = false;  ///< each by itself is missed far less
     double others = 0;                ///< by which the other cameras, or each by itself, are missed

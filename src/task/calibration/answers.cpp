@@ -273,7 +273,7 @@ std::optional<RmsInterval> held_out_interval(const Campaign& campaign,
 
 namespace {
 
-constexpr double wanted_part = 0.8;  // of an error, that more poses shall leave
+constexpr double wanted_part = 0.8;  // more poses shall leave this part of an error
 
 /// Between the points, which are in the order of their counts, on logarithmic axes.
 double error_at(const std::vector<ErrorAtCount>& points, double ErrorAtCount::*error, Index n) {

@@ -9,7 +9,7 @@ namespace posewise::detail {
 /// Another robot's measurements are off by more than so many expected errors.
 inline constexpr double credible_errors = 10;
 
-/// Of a robot of which nothing is known but the sizes expected of its errors.
+/// States a robot of which nothing is known but the sizes expected of its errors.
 Estimate uncalibrated(const Campaign& campaign, const Parameters& at);
 
 /// By how much the nominal robot is expected to miss the points measured, as the spread, the model

@@ -72,7 +72,7 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     return plan;
 }
 
-/// Of what is seen in pixels only.
+/// Returns nothing where no pixels are measured, or no error of the robot is sought.
 std::optional<RobotError> predict_robot_alone(const PlanningProblem& problem, const MatrixXd& M) {
     const Campaign& campaign = problem.campaign;
     if (!campaign.sensor->has_pixels() || campaign.robot.parameter_count() == 0) {
