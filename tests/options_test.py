@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 
+os.environ["OMP_NUM_THREADS"] = "1"  # a thousand short runs
 PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
 ARM = """name: arm
 robot:

@@ -11,7 +11,7 @@ from . import _posewise
 from ._calls import Doubt, InputError, Interrupted
 from .calibration import Estimate, calibrate
 from .campaign import Campaign, Sensor
-from .choice import Choice, design, indices, select
+from .choice import Choice, Weights, design, indices, relax, select
 from .planning import Plan, plan
 from .studies import Study, study
 
@@ -27,10 +27,12 @@ __all__ = [
     "Plan",
     "Sensor",
     "Study",
+    "Weights",
     "calibrate",
     "design",
     "indices",
     "plan",
+    "relax",
     "select",
     "study",
 ]

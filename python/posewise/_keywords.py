@@ -17,6 +17,10 @@ _kinds = {
 # A keyword, and those of which it needs one. `prior=False` is that keyword with that value; what
 # `source` is counts as "a campaign" or "Jacobians", a study without measurements as "a simulation".
 _of_estimate = {"as_prior": ["estimate"], "only": ["estimate"], "moved": ["estimate"]}
+_of_robot = {
+    key: ["a campaign"]
+    for key in ("candidates", "measurements", "random", "estimate", "focus", "repeats")
+}
 _needs: dict[str, dict[str, list[str]]] = {
     "select": {
         **_of_estimate,
@@ -24,11 +28,14 @@ _needs: dict[str, dict[str, list[str]]] = {
         "per_group": ["groups"],
         "rows": ["Jacobians"],
         "force": ["estimate", "measurements"],
-        **{
-            key: ["a campaign"]
-            for key in ("candidates", "measurements", "random", "estimate", "focus", "repeats",
-                        "least_distance_deg")
-        },
+        **_of_robot,
+        "least_distance_deg": ["a campaign"],
+    },
+    "relax": {
+        **_of_estimate,
+        "rows": ["Jacobians"],
+        "force": ["estimate", "measurements"],
+        **_of_robot,
     },
     "plan": {
         **_of_estimate,
@@ -68,13 +75,15 @@ _needs: dict[str, dict[str, list[str]]] = {
 }
 
 # Pairs that exclude each other.
+_of_choice = [
+    ("as_prior", "prior=False"),
+    ("candidates", "measurements"),
+    ("candidates", "random"),
+    ("measurements", "random"),
+]
 _excludes: dict[str, list[tuple[str, str]]] = {
-    "select": [
-        ("as_prior", "prior=False"),
-        ("candidates", "measurements"),
-        ("candidates", "random"),
-        ("measurements", "random"),
-    ],
+    "select": _of_choice,
+    "relax": _of_choice,
     "plan": [
         ("as_prior", "prior=False"),
         ("poses", "target_mm"),

@@ -16,13 +16,36 @@ from ._blocks import Blocks, Prior, campaign_prior, labels_of, make_blocks, pose
 from ._calls import Array, InputError, Progress, as_json, call_options, check_kind, made, names, numbers
 from ._files import Content, FilePath, Files, Input, Places, Table, given, places, table
 from ._keywords import check_keywords
-from ._results import Result, as_stated, result_input, symmetric, target_of, with_sources
+from ._results import Result, Shown, as_stated, result_input, symmetric, target_of, with_sources
 from .calibration import Estimate
 from .campaign import Campaign
 
 
+class Judged(Result):
+    """A result with a value of the criterion and a bound on it."""
+
+    @property
+    def criterion(self: Shown) -> str:
+        return str(self.document["criterion"])
+
+    @property
+    def value(self: Shown) -> float:
+        """Value of the criterion, see :func:`select`; larger is better."""
+        return float(-np.inf if self.document["value"] is None else self.document["value"])
+
+    @property
+    def bound(self: Shown) -> float:
+        """Proven: no choice of as many candidates has a larger value."""
+        return float(np.inf if self.document["bound"] is None else self.document["bound"])
+
+    @property
+    def efficiency(self: Shown) -> float:
+        """Proven share of the best possible value, 0 to 1."""
+        return float(self.document["efficiency"])
+
+
 @dataclass(frozen=True)
-class Choice(Result):
+class Choice(Judged):
     """Chosen poses, how good they are, and the proof. Data only: it can be pickled."""
 
     document: dict[str, Any] = field(repr=False)  #: as ``posewise select --json`` prints it
@@ -47,25 +70,6 @@ class Choice(Result):
         rows = [pose["joints"] for pose in self.document["poses"]]
         index = pd.Index([pose["id"] for pose in self.document["poses"]], name="config")
         return pd.DataFrame(rows, index=index)
-
-    @property
-    def criterion(self) -> str:
-        return str(self.document["criterion"])
-
-    @property
-    def value(self) -> float:
-        """Value of the criterion, see :func:`select`; larger is better."""
-        return float(-np.inf if self.document["value"] is None else self.document["value"])
-
-    @property
-    def bound(self) -> float:
-        """Proven: no choice of as many candidates has a larger value."""
-        return float(np.inf if self.document["bound"] is None else self.document["bound"])
-
-    @property
-    def efficiency(self) -> float:
-        """Proven share of the best possible value, 0 to 1."""
-        return float(self.document["efficiency"])
 
     @property
     def is_optimal(self) -> bool:
@@ -213,70 +217,180 @@ def select(
     >>> len(choice.poses), choice.is_optimal
     (5, True)
     """
-    check_kind(estimate, Estimate, "estimate")
-    is_robot = isinstance(source, Campaign)
     labels = labels_of(groups)
-    keywords: dict[str, Any] = {
-        "poses": k,
-        "criterion": criterion,
-        "prior": prior_flag(prior),
-        "exclude": names("exclude", exclude),
-        "groups": labels,
-        "per_group": per_group,
-        "repeat_limit": repeat_limit,
-        "least_distance_deg": least_distance_deg,
-        "focus": focus,
-        "repeats": repeats,
-        "as_prior": as_prior,
-        "only": names("only", only),
-        "moved": names("moved", moved),
-        "starts": starts,
-        "proof": proof,
-        "seed": seed,
-        "force": force,
-        "random": random,
-    }
-    unread = {"candidates": candidates, "measurements": measurements, "estimate": estimate, "rows": rows}
-    check_keywords("select", {**keywords, **unread}, "a campaign" if is_robot else "Jacobians")
-    if k is None:
-        raise InputError("select(): needs `k`, how many poses to choose")
+    asked = _Asked(
+        "select",
+        source,
+        {
+            "poses": k,
+            "criterion": criterion,
+            "exclude": names("exclude", exclude),
+            "groups": labels,
+            "per_group": per_group,
+            "repeat_limit": repeat_limit,
+            "least_distance_deg": least_distance_deg,
+            "focus": focus,
+            "repeats": repeats,
+            "as_prior": as_prior,
+            "only": names("only", only),
+            "moved": names("moved", moved),
+            "starts": starts,
+            "proof": proof,
+            "seed": seed,
+            "force": force,
+            "random": random,
+        },
+        rows,
+        prior,
+        {"candidates": candidates, "measurements": measurements, "held": held,
+         "test_poses": test_poses, "estimate": estimate},
+    )
     options = call_options(threads, time, progress)
-    if not isinstance(source, Campaign):
-        blocks = make_blocks(source, rows, prior, held, test_poses)
-        with Files("k") as files:
-            result = _posewise.choose_plain(blocks.core(), as_json("select", keywords), options)
-            return _made(files, result, blocks, {}, labels, options)
-    if candidates is None and measurements is None and random is None:
-        raise InputError("select(): needs one of `candidates`, `measurements` and `random`")
-    campaign_prior(prior)
-    inputs = given({
-        "candidates": places(candidates, "candidates", source._core.columns),
-        "measurements": table(measurements, "measurements"),
-        "held": table(held, "held"),
-        "test_poses": places(test_poses, "test_poses", source._core.columns),
-        "estimate": result_input(estimate),
-    })
-    with Files("k") as files:
-        stated = as_json("select", {**keywords, **files.open(inputs)})
-        result = _posewise.choose(source._core, stated, options)
-        return _made(files, result, source, inputs, labels, options)
-
-
-def _made(
-    files: Files,
-    result: Any,
-    source: Blocks | Campaign,
-    inputs: dict[str, Input],
-    labels: list[int] | None,
-    options: Any,
-) -> Choice:
-    campaign = source._core.path if isinstance(source, Campaign) else None
-    stated, text, doubts = files.named(result)
-    document = with_sources(json.loads(stated), {**as_stated(inputs), "campaign": campaign})
+    stated, text, doubts = asked.call(_posewise.choose_plain, _posewise.choose, options)
+    document = with_sources(json.loads(stated), {**as_stated(asked.files), "campaign": asked.path})
     document.pop("plan_file", None)
     if document["search"]["stop_reason"] in ("interrupted", "time limit"):
         doubts.append("stopped early; the choice is the best so far")
-    return made(Choice(document, text, doubts, source, inputs, labels or []), doubts, options)
+    choice = Choice(document, text, doubts, asked.inputs, asked.files, labels or [])
+    return made(choice, doubts, options)
+
+
+class _Asked:
+    """What select() or relax() was asked for, checked; ``given`` are tables, arrays, an estimate."""
+
+    def __init__(
+        self,
+        function: str,
+        source: Campaign | npt.ArrayLike,
+        keywords: dict[str, Any],
+        rows: int | None,
+        prior: Prior,
+        given_inputs: dict[str, Any],
+    ) -> None:
+        check_kind(given_inputs["estimate"], Estimate, "estimate")
+        is_robot = isinstance(source, Campaign)
+        self.function = function
+        self.keywords = {**keywords, "prior": prior_flag(prior)}
+        check_keywords(
+            function,
+            {**self.keywords, **given_inputs, "rows": rows},
+            "a campaign" if is_robot else "Jacobians",
+        )
+        if keywords["poses"] is None:
+            raise InputError(f"{function}(): needs `k`, how many poses to choose")
+        self.inputs: Blocks | Campaign  #: candidates as Jacobians, or the robot
+        self.files: dict[str, Input] = {}  #: what a robot's call was given beside it
+        self.path: str | None = None
+        held, test_poses = given_inputs["held"], given_inputs["test_poses"]
+        if not isinstance(source, Campaign):
+            self.inputs = make_blocks(source, rows, prior, held, test_poses)
+            return
+        candidates, measurements = given_inputs["candidates"], given_inputs["measurements"]
+        if candidates is None and measurements is None and keywords["random"] is None:
+            raise InputError(
+                f"{function}(): needs one of `candidates`, `measurements` and `random`"
+            )
+        campaign_prior(prior)
+        self.inputs, self.path = source, source._core.path
+        self.files = given({
+            "candidates": places(candidates, "candidates", source._core.columns),
+            "measurements": table(measurements, "measurements"),
+            "held": table(held, "held"),
+            "test_poses": places(test_poses, "test_poses", source._core.columns),
+            "estimate": result_input(given_inputs["estimate"]),
+        })
+
+    def call(self, of_blocks: Any, of_campaign: Any, options: Any) -> tuple[str, str, list[str]]:
+        """Document, text and warnings, by the one or the other of the library's functions."""
+        with Files("k") as files:
+            keywords = as_json(self.function, {**self.keywords, **files.open(self.files)})
+            if isinstance(self.inputs, Blocks):
+                return files.named(of_blocks(self.inputs.core(), keywords, options))
+            return files.named(of_campaign(self.inputs._core, keywords, options))
+
+
+@dataclass(frozen=True)
+class Weights(Judged):
+    """Weights of candidates, and the bound that they prove. Data only: it can be pickled."""
+
+    document: dict[str, Any] = field(repr=False)  #: as ``posewise select --relax --json`` prints it
+    text: str
+    warnings: list[str] = field(repr=False)
+
+    @property
+    def weights(self) -> pd.Series:
+        """By candidate, the heaviest first; those of weight 0 are left out. Of Jacobians by index."""
+        listed = self.document["weights"]
+        ids = [one["id"] for one in listed]
+        labels = ids if self.document["campaign"] else [int(one) for one in ids]
+        values = np.array([one["weight"] for one in listed], dtype=float)
+        return pd.Series(values, index=pd.Index(labels, name="config"), name="weight")
+
+
+def relax(
+    source: Campaign | npt.ArrayLike,
+    k: int | None = None,
+    *,
+    candidates: Places | None = None,
+    measurements: Table | None = None,
+    random: int | None = None,
+    rows: int | None = None,
+    criterion: str | None = None,
+    prior: Prior = None,
+    held: Any = None,
+    test_poses: Any = None,
+    exclude: Sequence[Any] = (),
+    repeat_limit: int | None = None,
+    focus: str | None = None,
+    repeats: float | None = None,
+    estimate: Estimate | None = None,
+    as_prior: bool | None = None,
+    only: Sequence[str] | None = None,
+    moved: Sequence[str] | None = None,
+    seed: int | None = None,
+    force: bool = False,
+    threads: int | None = None,
+    time: float | None = None,
+) -> Weights:
+    """Weights the candidates, 0 to ``repeat_limit`` (1) each and ``k`` in all, instead of choosing.
+
+    This is the approximate design that :func:`select` proves its bound with: the continuous problem
+    whose largest weights are often taken as a choice. Arguments are those of :func:`select`.
+
+    >>> import numpy as np
+    >>> J = np.random.default_rng(1).normal(size=(50, 3, 6))
+    >>> found = relax(J, 5)
+    >>> round(float(found.weights.sum()), 9), bool(select(J, 5).value <= found.bound)
+    (5.0, True)
+    """
+    asked = _Asked(
+        "relax",
+        source,
+        {
+            "poses": k,
+            "criterion": criterion,
+            "exclude": names("exclude", exclude),
+            "repeat_limit": repeat_limit,
+            "focus": focus,
+            "repeats": repeats,
+            "as_prior": as_prior,
+            "only": names("only", only),
+            "moved": names("moved", moved),
+            "seed": seed,
+            "force": force,
+            "random": random,
+        },
+        rows,
+        prior,
+        {"candidates": candidates, "measurements": measurements, "held": held,
+         "test_poses": test_poses, "estimate": estimate},
+    )
+    options = call_options(threads, time, None)
+    stated, text, doubts = asked.call(_posewise.relax_plain, _posewise.relax, options)
+    document = json.loads(stated)
+    if document["ending"] in ("interrupted", "time limit"):
+        doubts.append("stopped early; the weights are the best so far")
+    return made(Weights(document, text, doubts), doubts, options)
 
 
 def design(X: npt.ArrayLike, k: int, **keywords: Any) -> Choice:

@@ -1,14 +1,15 @@
 #include "linear_registration.hpp"
 
-#include <Eigen/QR>
 #include <limits>
 
+#include "core/decompositions.hpp"
 #include "posewise/model/chain.hpp"
 
 namespace posewise::detail {
 namespace {
 
 constexpr Index of_rotation = 9;  // columns of A
+constexpr double least_told = 1e-9;
 
 using RowsOfRotation = Eigen::Matrix<double, of_rotation, 1>;
 
@@ -25,12 +26,10 @@ struct RotationMisfit {
 
 RotationMisfit eliminate_the_rest(const RegistrationEquations& equations) {
     const auto& [A, b] = equations;
-    Eigen::ColPivHouseholderQR<MatrixXd> rest(A.rightCols(A.cols() - of_rotation));
-    rest.setThreshold(1e-9);
+    const PivotedReflections rest(A.rightCols(A.cols() - of_rotation), least_told);
     MatrixXd of_both(A.rows(), of_rotation + 1);
     of_both << A.leftCols(of_rotation), b;
-    of_both.applyOnTheLeft(rest.householderQ().adjoint());
-    const MatrixXd left = of_both.bottomRows(A.rows() - rest.rank());
+    const MatrixXd left = rest.outside(of_both);
     return {left.leftCols(of_rotation), left.col(of_rotation)};
 }
 
@@ -78,11 +77,10 @@ Matrix3d descend(const RotationMisfit& misfit, Matrix3d X) {
 
 std::optional<RegistrationSolution> solve_freely(const RegistrationEquations& equations) {
     const auto& [A, b] = equations;
-    Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
     // Below it a millimetre in metres, as of noise and of errors of the robot, is not told from 0.
-    qr.setThreshold(1e-3);
-    if (qr.rank() < A.cols()) return std::nullopt;
-    const VectorXd solution = qr.solve(b);
+    const PivotedReflections factors(A, 1e-3);
+    if (factors.rank() < A.cols()) return std::nullopt;
+    const VectorXd solution = factors.solve(b);
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> X(solution.data());
     return RegistrationSolution{nearest_rotation(X), solution.segment<3>(of_rotation),
                                 solution.tail(A.cols() - of_rotation - 3)};
@@ -99,9 +97,9 @@ RegistrationSolution solve_for_rotation(const RegistrationEquations& equations) 
         best = X;
         least = misfit(X);
     }
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> rest(A.rightCols(A.cols() - of_rotation));
-    rest.setThreshold(1e-9);
-    const VectorXd solution = rest.solve(b - A.leftCols(of_rotation) * rows_of(best));
+    const VectorXd solution =
+        solve_with_least_norm(A.rightCols(A.cols() - of_rotation),
+                              b - A.leftCols(of_rotation) * rows_of(best), least_told);
     return {best, solution.head<3>(), solution.tail(solution.size() - 3)};
 }
 

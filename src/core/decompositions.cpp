@@ -1,6 +1,6 @@
 #include "decompositions.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <vector>
@@ -27,6 +27,36 @@ OrthogonalFactors orthogonal_factors(MatrixXd A) {
     const Index count = std::min(A.rows(), A.cols());
     return {qr.householderQ() * MatrixXd::Identity(A.rows(), count),
             A.topRows(count).triangularView<Eigen::Upper>()};
+}
+
+Reflections::Reflections(const MatrixXd& A) : qr_(A) {
+    R_ = qr_.matrixQR().topRows(std::min(A.rows(), A.cols())).triangularView<Eigen::Upper>();
+}
+
+MatrixXd Reflections::Q_times(const MatrixXd& X) const { return qr_.householderQ() * X; }
+
+MatrixXd Reflections::Q_transposed_times(const MatrixXd& X) const {
+    return qr_.householderQ().adjoint() * X;
+}
+
+PivotedReflections::PivotedReflections(const MatrixXd& A, std::optional<double> threshold)
+    : qr_(A.rows(), A.cols()) {
+    if (threshold) qr_.setThreshold(*threshold);
+    qr_.compute(A);
+}
+
+Index PivotedReflections::rank() const { return qr_.rank(); }
+
+MatrixXd PivotedReflections::solve(const MatrixXd& B) const { return qr_.solve(B); }
+
+MatrixXd PivotedReflections::outside(const MatrixXd& B) const {
+    MatrixXd turned = B;
+    turned.applyOnTheLeft(qr_.householderQ().adjoint());
+    return turned.bottomRows(B.rows() - rank());
+}
+
+MatrixXd PivotedReflections::basis() const {
+    return qr_.householderQ() * MatrixXd::Identity(qr_.rows(), rank());
 }
 
 MatrixXd triangular_factor_of_many(const RowMatrixXd& A) {
@@ -80,6 +110,12 @@ SingularDirections singular_directions(const MatrixXd& A) {
     return {svd.singularValues(), svd.matrixV()};
 }
 
+VectorXd singular_values_of(const MatrixXd& A) {
+    return Eigen::JacobiSVD<MatrixXd>(A).singularValues();
+}
+
+MatrixXd inverse_of(const MatrixXd& A) { return A.inverse(); }
+
 Index count_independent_columns(const MatrixXd& A) {
     constexpr double least_left = 1e-10;
     const Index most = std::min(A.rows(), A.cols());
@@ -96,6 +132,13 @@ VectorXd solve_least_squares(MatrixXd A, const VectorXd& b) {
 MatrixXd solve_least_squares(MatrixXd A, const MatrixXd& B) {
     Eigen::Ref<MatrixXd> in_place(A);
     return HouseholderInPlace(in_place).solve(B);
+}
+
+VectorXd solve_with_least_norm(const MatrixXd& A, const VectorXd& b, double threshold) {
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition(A.rows(), A.cols());
+    decomposition.setThreshold(threshold);
+    decomposition.compute(A);
+    return decomposition.solve(b);
 }
 
 Eigen::SelfAdjointEigenSolver<MatrixXd> eigen_decomposition(const MatrixXd& M,

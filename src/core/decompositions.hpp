@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <optional>
 
 #include "posewise/core/types.hpp"
 
 namespace posewise::detail {
 
-// Eigen's decompositions that several files need, compiled in one.
+// Eigen's decompositions, compiled in one file: each takes a compiler 5 to 15 seconds.
 
 /// The R of A = Q R by reflections [Householder 1958], min(rows, cols) x cols.
 MatrixXd triangular_factor(MatrixXd A);
@@ -17,6 +19,39 @@ struct OrthogonalFactors {
     MatrixXd R;
 };
 OrthogonalFactors orthogonal_factors(MatrixXd A);
+
+/// A = Q R by reflections, with the whole Q, which is not formed.
+class Reflections {
+  public:
+    Reflections() = default;
+    explicit Reflections(const MatrixXd& A);
+    /// min(rows, cols) x cols.
+    const MatrixXd& R() const { return R_; }
+    MatrixXd Q_times(const MatrixXd& X) const;
+    MatrixXd Q_transposed_times(const MatrixXd& X) const;
+
+  private:
+    Eigen::HouseholderQR<MatrixXd> qr_;
+    MatrixXd R_;
+};
+
+/// The same with the columns of A in the order of what is left of them beside those before. A
+/// column counts as dependent where that is at most `threshold` of the largest.
+class PivotedReflections {
+  public:
+    /// By default the threshold is that of rounding, as Eigen has it.
+    explicit PivotedReflections(const MatrixXd& A, std::optional<double> threshold = std::nullopt);
+    Index rank() const;
+    /// X of least |A X - B|^2, with zeros for dependent columns.
+    MatrixXd solve(const MatrixXd& B) const;
+    /// What of B is outside the column space, in some orthonormal basis: (rows - rank) x cols.
+    MatrixXd outside(const MatrixXd& B) const;
+    /// An orthonormal basis of the column space: rows x rank.
+    MatrixXd basis() const;
+
+  private:
+    Eigen::ColPivHouseholderQR<MatrixXd> qr_;
+};
 
 /// The R of many rows, some at a time, up to the signs of its rows.
 MatrixXd triangular_factor_of_many(const RowMatrixXd& A);
@@ -38,6 +73,12 @@ struct SingularDirections {
 };
 SingularDirections singular_directions(const MatrixXd& A);
 
+/// The singular values alone, min(rows, cols) of them.
+VectorXd singular_values_of(const MatrixXd& A);
+
+/// Of a regular square matrix.
+MatrixXd inverse_of(const MatrixXd& A);
+
 /// How many columns of A are independent, of norm 1 each: what is left of one beside those before
 /// it, pivoted by reflections, exceeds 1e-10, well above rounding (about 1e-14) and free of units.
 /// The rule for rows of an identification Jacobian: an information matrix A^T A, whose rounding is
@@ -47,6 +88,9 @@ Index count_independent_columns(const MatrixXd& A);
 /// The X of least |A X - B|^2, for an A of full column rank.
 VectorXd solve_least_squares(MatrixXd A, const VectorXd& b);
 MatrixXd solve_least_squares(MatrixXd A, const MatrixXd& B);
+
+/// Of those that are as good the shortest x; the threshold as of PivotedReflections.
+VectorXd solve_with_least_norm(const MatrixXd& A, const VectorXd& b, double threshold);
 
 /// Eigenvalues of the symmetric M in ascending order, eigenvectors in columns.
 Eigen::SelfAdjointEigenSolver<MatrixXd> eigen_decomposition(

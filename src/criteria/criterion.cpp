@@ -1,6 +1,5 @@
 #include "posewise/criteria/criterion.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cctype>
 #include <utility>
@@ -47,7 +46,7 @@ VectorXd singular_values(const RowMatrixXd& stacked) {
     if (count == 0) return values;
     MatrixXd R = stacked;
     if (stacked.rows() > stacked.cols()) R = detail::triangular_factor(std::move(R));
-    values.head(count) = Eigen::JacobiSVD<MatrixXd>(R).singularValues();
+    values.head(count) = detail::singular_values_of(R);
     return values;
 }
 

@@ -16,8 +16,8 @@ void WhitenedPose::place(const FlangeMotion& motion, const VectorXd& unknowns,
     if (is_diagonal_) inverse_deviations_ = N.diagonal().cwiseSqrt().cwiseInverse();
     whiten(N, A_, L_);
     if (A_.rows() > A_.cols()) {
-        qr_.compute(A_);
-        R_ = qr_.matrixQR().topRows(A_.cols()).triangularView<Eigen::Upper>();
+        factors_ = Reflections(A_);
+        R_ = factors_.R();
     } else {
         R_ = A_;
     }
@@ -33,7 +33,7 @@ MatrixXd WhitenedPose::to_readings(const MatrixXd& X) const {
     if (A_.rows() > A_.cols()) {
         all.setZero(A_.rows(), X.cols());
         all.topRows(X.rows()) = X;
-        all = (qr_.householderQ() * all).eval();
+        all = factors_.Q_times(all);
     }
     if (is_diagonal_) return inverse_deviations_.asDiagonal() * all;
     L_.transpose().triangularView<Eigen::Upper>().solveInPlace(all);

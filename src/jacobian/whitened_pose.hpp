@@ -1,7 +1,6 @@
 #pragma once
 
-#include <Eigen/QR>
-
+#include "core/decompositions.hpp"
 #include "measurement/noise.hpp"
 
 namespace posewise::detail {
@@ -48,9 +47,9 @@ class WhitenedPose {
     PoseNoise noise_;
     RowMatrixXd A_;  ///< L^-1 A
     bool is_diagonal_ = false;
-    MatrixXd L_;                         ///< where N is not diagonal
-    VectorXd inverse_deviations_;        ///< where it is
-    Eigen::HouseholderQR<MatrixXd> qr_;  ///< of A_, if it has more rows than columns
+    MatrixXd L_;                   ///< where N is not diagonal
+    VectorXd inverse_deviations_;  ///< where it is
+    Reflections factors_;          ///< of A_, if it has more rows than columns
     MatrixXd R_;
     Matrix6d C_;
     MatrixXd K_;

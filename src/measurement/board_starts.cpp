@@ -70,8 +70,7 @@ Isometry3d leant_over(const Isometry3d& pose) {
     const Vector3d sight = pose.translation().normalized();
     const Vector3d normal = pose.linear().col(2);
     const Vector3d mirrored = 2 * sight * sight.dot(normal) - normal;
-    other.linear() =
-        Eigen::Quaterniond::FromTwoVectors(normal, mirrored).toRotationMatrix() * pose.linear();
+    other.linear() = rotation_between(normal, mirrored) * pose.linear();
     return other;
 }
 
@@ -99,14 +98,14 @@ std::optional<Isometry3d> distant_pose_of(const Body& body,
     const Index count = std::ssize(directions);
     Vector3d sight = Vector3d::Zero();
     for (const Vector2d& direction : directions) sight += direction.homogeneous().normalized();
-    const auto towards = Eigen::Quaterniond::FromTwoVectors(sight, Vector3d::UnitZ());
+    const Matrix3d towards = rotation_between(sight, Vector3d::UnitZ());
     MatrixXd A(count, 4), b(count, 2);
     for (Index k = 0; k < count; ++k) {
         const auto point = static_cast<std::size_t>(k);
         A.row(k) << body.points[point].transpose(), 1;
         b.row(k) = (towards * directions[point].homogeneous()).hnormalized().transpose();
     }
-    const Eigen::Matrix<double, 4, 2> solution = A.householderQr().solve(b);
+    const Eigen::Matrix<double, 4, 2> solution = solve_least_squares(A, b);
     const Vector3d x = solution.col(0).head<3>(), y = solution.col(1).head<3>();
     const double depth = 1 / std::sqrt(x.norm() * y.norm());
     if (!std::isfinite(depth)) return std::nullopt;
@@ -115,7 +114,7 @@ std::optional<Isometry3d> distant_pose_of(const Body& body,
     Isometry3d pose = Isometry3d::Identity();
     pose.linear() = nearest_rotation(R.transpose());
     pose.translation() = body.size * depth * Vector3d(solution(3, 0), solution(3, 1), 1);
-    pose = towards.inverse() * pose;
+    pose = Isometry3d(towards.transpose()) * pose;
     pose.translation() -= pose.linear() * body.middle;
     return pose;
 }

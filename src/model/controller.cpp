@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <set>
 
+#include "core/decompositions.hpp"
 #include "joint_limits.hpp"
 #include "posewise/core/errors.hpp"
 
@@ -45,15 +44,14 @@ void check_motions(const Chain& robot, const MatrixXd& from_model) {
 }
 
 /// The inverse; rows are scaled first, which a controller's units do.
-MatrixXd inverse_of(const MatrixXd& matrix) {
-    const Eigen::JacobiSVD<MatrixXd> svd(matrix);
-    const VectorXd& values = svd.singularValues();
+MatrixXd checked_inverse_of(const MatrixXd& matrix) {
+    const VectorXd values = detail::singular_values_of(matrix);
     if (values.size() > 0 && !(values[values.size() - 1] * largest_condition >= values[0])) {
         throw InputError(
             "the controller's joints do not tell the model's: their matrix is singular; must be "
             "independent sums");
     }
-    return matrix.inverse();
+    return detail::inverse_of(matrix);
 }
 
 /// Direction of a joint's axis in the base frame with all joints at zero.
@@ -92,7 +90,7 @@ ControllerJoints::ControllerJoints(const Chain& robot, std::vector<std::string> 
     }
     check_names(names_);
     check_motions(robot, from_model_);
-    to_model_ = inverse_of(from_model_);
+    to_model_ = checked_inverse_of(from_model_);
     for (const Joint& joint : robot.joints()) motions_.push_back(joint.motion);
 }
 

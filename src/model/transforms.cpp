@@ -40,6 +40,20 @@ Matrix3d nearest_rotation(const Matrix3d& X) {
     return svd.matrixU() * D * svd.matrixV().transpose();
 }
 
+Matrix3d rotation_between(const Vector3d& from, const Vector3d& to) {
+    const Vector3d a = from.normalized(), b = to.normalized();
+    const Vector3d middle = a + b;
+    constexpr double opposite = 1e-8;
+    if (middle.norm() < opposite) {
+        const Vector3d axis = a.unitOrthogonal();
+        return 2 * axis * axis.transpose() - Matrix3d::Identity();
+    }
+    // By 180 deg about a, then about the middle of both.
+    const Vector3d half = middle.normalized();
+    return (2 * half * half.transpose() - Matrix3d::Identity()) *
+           (2 * a * a.transpose() - Matrix3d::Identity());
+}
+
 Matrix3d rotation_vector_rate(const Vector3d& vector) {
     const double angle = vector.norm();
     const Matrix3d X = cross_matrix(vector);

@@ -83,8 +83,7 @@ Isometry3d flange_on_axis(const Isometry3d& flange, const Isometry3d& last,
     if (sideways <= ur_rounding.position && off <= ur_rounding.orientation) {
         const Vector3d z = rest.linear().col(2);
         rest.translation().head<2>().setZero();
-        rest.linear() = nearest_rotation(Eigen::Quaterniond::FromTwoVectors(z, Vector3d::UnitZ()) *
-                                         rest.linear());
+        rest.linear() = nearest_rotation(rotation_between(z, Vector3d::UnitZ()) * rest.linear());
         return last * rest;
     }
     throw InputError(fmt::format(

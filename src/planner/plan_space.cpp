@@ -60,7 +60,8 @@ SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
     // slow.
     select.starts = 1;
     select.kicks = options.criterion == Criterion::G ? 0 : 4;
-    select.proof = 0.01;
+    // Its bound is that of the relaxation: a search of all choices gains little there.
+    select.proof = space.is_pool_only ? 0.01 : 0;
     select.gap = 1e-3;
     if (space.least_joint_distance > 0) {
         // Selection measures by Euclid: at distance d sqrt(n) one joint differs by d at least.

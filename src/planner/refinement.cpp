@@ -48,7 +48,9 @@ class Refiner {
           held_(held),
           held_information_(information_of(held.rows, space.parameter_count)),
           options_(options),
-          poses_(start) {
+          poses_(start),
+          // What is to beat a plan has all its poses but a few at rest already.
+          is_swept_(std::isfinite(options.worth)) {
         for (Index i = 0; i < start.rows(); ++i) informations_.push_back(information(pose(i)));
     }
 
@@ -266,7 +268,7 @@ class Refiner {
     RowMatrixXd poses_;
     std::vector<MatrixXd> informations_;
     double tolerance_ = 1e-10;
-    bool is_swept_ = false;
+    bool is_swept_;
     Ending ending_ = Ending::NotRun;
 };
 

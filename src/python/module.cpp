@@ -123,19 +123,43 @@ Result to_result(const Verification& verification, const Plan& plan) {
     return {io::to_json(verification, plan, ""), format_findings(verification.findings), {}};
 }
 
-Result choose_plain(const PlainBlocks& blocks, const std::string& keywords,
-                    const CallOptions& call_options) {
-    const PlanCall asked = choice_call(parse_keywords("select", keywords));
+Result to_result(const ApproximateDesign& design, const Sentences& warnings) {
+    return {io::with_sentences(io::to_json(design), warnings), format(design), warnings};
+}
+
+/// What `compute(candidates, options)` makes of plain blocks.
+template <typename Compute>
+Result of_plain(const PlainBlocks& blocks, const Keywords& keywords,
+                const CallOptions& call_options, const Compute& compute) {
+    const PlanCall asked = choice_call(keywords);
     return call(call_options, [&](const CallControl& control) {
         ChoiceOptions options = read_plain(blocks, asked.request, asked.groups);
         control.steer(options);
-        return to_result(choose(make_equal_blocks(blocks.candidates, blocks.rows), options), {});
+        return to_result(compute(make_equal_blocks(blocks.candidates, blocks.rows), options), {});
     });
 }
 
-Result choose_of_campaign(const io::CampaignFile& campaign, const std::string& keywords,
-                          const CallOptions& call_options) {
-    PlanCall asked = choice_call(parse_keywords("select", keywords));
+Result choose_plain(const PlainBlocks& blocks, const std::string& keywords,
+                    const CallOptions& options) {
+    return of_plain(blocks, parse_keywords("select", keywords), options,
+                    [](Blocks&& candidates, const ChoiceOptions& asked) {
+                        return choose(std::move(candidates), asked);
+                    });
+}
+
+Result relax_plain(const PlainBlocks& blocks, const std::string& keywords,
+                   const CallOptions& options) {
+    return of_plain(blocks, parse_keywords("relax", keywords), options,
+                    [](Blocks&& candidates, const ChoiceOptions& asked) {
+                        return relax_choice(std::move(candidates), asked);
+                    });
+}
+
+/// What `compute(campaign, candidates, options)` makes of configurations.
+template <typename Compute>
+Result of_campaign(const io::CampaignFile& campaign, const Keywords& keywords,
+                   const CallOptions& call_options, const Compute& compute) {
+    PlanCall asked = choice_call(keywords);
     asked.request.sources.campaign = campaign.path;
     return call(call_options, [&](const CallControl& control) {
         Sentences warnings;
@@ -143,8 +167,27 @@ Result choose_of_campaign(const io::CampaignFile& campaign, const std::string& k
         ChoiceInputs inputs = read_choice(asked, file, warnings);
         inputs.options.judge = judge(asked.is_forced, warnings);
         control.steer(inputs.options);
-        return to_result(choose(file, std::move(inputs.candidates), inputs.options), warnings);
+        const auto result = compute(file, std::move(inputs.candidates), inputs.options);
+        return to_result(result, warnings);
     });
+}
+
+Result choose_of_campaign(const io::CampaignFile& campaign, const std::string& keywords,
+                          const CallOptions& options) {
+    return of_campaign(
+        campaign, parse_keywords("select", keywords), options,
+        [](const Campaign& file, Candidates&& candidates, const ChoiceOptions& asked) {
+            return choose(file, std::move(candidates), asked);
+        });
+}
+
+Result relax_of_campaign(const io::CampaignFile& campaign, const std::string& keywords,
+                         const CallOptions& options) {
+    return of_campaign(
+        campaign, parse_keywords("relax", keywords), options,
+        [](const Campaign& file, Candidates&& candidates, const ChoiceOptions& asked) {
+            return relax_choice(file, std::move(candidates), asked);
+        });
 }
 
 /// A plan as it was asked for. An estimate that was taken by force may be taken again.
@@ -421,8 +464,10 @@ PYBIND11_MODULE(_posewise, module) {
     define_records(module);
     define_campaign(module);
     module.def("choose_plain", &choose_plain);
+    module.def("relax_plain", &relax_plain);
     module.def("verify_plain", &verify_plain);
     module.def("choose", &choose_of_campaign);
+    module.def("relax", &relax_of_campaign);
     module.def("verify", &verify_of_campaign);
     module.def("rate_blocks", &rate_blocks);
     module.def("plan", &plan_campaign);

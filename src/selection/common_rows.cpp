@@ -1,6 +1,5 @@
 #include "common_rows.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 
 #include "core/decompositions.hpp"
@@ -18,36 +17,36 @@ constexpr Index most_copied = 100'000'000;  // numbers
 class RowSpace {
   public:
     explicit RowSpace(const Eigen::Ref<const RowMatrixXd>& block)
-        : qr_(block.transpose()), rows_(block.rows()) {}
+        : factors_(block.transpose()), rows_(block.rows()), columns_(block.cols()) {}
 
     bool is_independent() const {
-        const auto R = qr_.matrixQR().diagonal().cwiseAbs();
-        return rows_ > 0 && rows_ <= qr_.rows() && R.minCoeff() > least_independent * R.maxCoeff();
+        const auto R = factors_.R().diagonal().cwiseAbs();
+        return rows_ > 0 && rows_ <= columns_ && R.minCoeff() > least_independent * R.maxCoeff();
     }
 
     /// What of V is outside.
     MatrixXd outside(const MatrixXd& V) const {
-        MatrixXd turned = qr_.householderQ().adjoint() * V;
+        MatrixXd turned = factors_.Q_transposed_times(V);
         turned.topRows(rows_).setZero();
-        return qr_.householderQ() * turned;
+        return factors_.Q_times(turned);
     }
 
     /// W with B^T W = V, for a V inside.
     MatrixXd solve(const MatrixXd& V) const {
-        const MatrixXd turned = qr_.householderQ().adjoint() * V;
-        return qr_.matrixQR().topRows(rows_).triangularView<Eigen::Upper>().solve(
-            turned.topRows(rows_));
+        const MatrixXd turned = factors_.Q_transposed_times(V);
+        return factors_.R().triangularView<Eigen::Upper>().solve(turned.topRows(rows_));
     }
 
   private:
-    Eigen::HouseholderQR<MatrixXd> qr_;
+    Reflections factors_;
     Index rows_;
+    Index columns_;
 };
 
 /// An orthonormal basis, in columns, of what the row spaces of some of the blocks share.
 MatrixXd shared_directions(const Blocks& blocks) {
-    MatrixXd V = Eigen::HouseholderQR<MatrixXd>(blocks[0].transpose()).householderQ() *
-                 MatrixXd::Identity(blocks.parameter_count(), blocks[0].rows());
+    MatrixXd V = Reflections(blocks[0].transpose())
+                     .Q_times(MatrixXd::Identity(blocks.parameter_count(), blocks[0].rows()));
     const Index stride = std::max<Index>(1, blocks.count() / sample_size);
     for (Index i = 0; i < blocks.count() && V.cols() > 0; i += stride) {
         const RowSpace space(blocks[i]);
@@ -80,8 +79,7 @@ CommonRows split_common_rows(const Blocks& blocks) {
         const auto at = static_cast<std::size_t>(i);
         const MatrixXd W = space.solve(V);
         squares[at] = W.transpose() * W;
-        const RowMatrixXd turned =
-            Eigen::HouseholderQR<MatrixXd>(W).householderQ().adjoint() * blocks[i];
+        const RowMatrixXd turned = Reflections(W).Q_transposed_times(blocks[i]);
         const Index first = split.others.first_row[at];
         const Index left = split.others.first_row[at + 1] - first;
         split.others.matrix.middleRows(first, left) = turned.bottomRows(left);
@@ -92,7 +90,7 @@ CommonRows split_common_rows(const Blocks& blocks) {
             return {};
         }
     }
-    split.rows = root_of(squares[0].inverse()).transpose() * V.transpose();
+    split.rows = root_of(inverse_of(squares[0])).transpose() * V.transpose();
     return split;
 }
 

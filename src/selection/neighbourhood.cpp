@@ -17,7 +17,7 @@ constexpr Index witness_count = 16;  // of each M
 
 /// The test poses predicted worst, the worst first.
 std::vector<RowMatrixXd> worst_predicted(const Blocks& test_poses, const MatrixXd& M) {
-    const VectorXd variances = sensitivities(test_poses, M.inverse());
+    const VectorXd variances = sensitivities(test_poses, inverse_of(M));
     std::vector<Index> order(static_cast<std::size_t>(variances.size()));
     std::iota(order.begin(), order.end(), Index{0});
     const Index count = std::min(witness_count, variances.size());
@@ -151,7 +151,7 @@ bool Neighbourhood::passes_witnesses(const MatrixXd& M, double value) {
 
 double Neighbourhood::worst_prediction(const MatrixXd& M, double value) {
     if (!passes_witnesses(M, value)) return 0;
-    const VectorXd variances = sensitivities(*objective_.test_poses, M.inverse());
+    const VectorXd variances = sensitivities(*objective_.test_poses, inverse_of(M));
     Index worst = 0;
     const double largest = variances.maxCoeff(&worst);
     witnesses_.insert(witnesses_.begin(), (*objective_.test_poses)[worst]);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "posewise/model/chain.hpp"
@@ -53,6 +54,24 @@ TEST(OriginElements, AreTheOrigin) {
     EXPECT_TRUE(pose.translation().isApprox(xyz, 1e-15));
     EXPECT_TRUE(pose.linear().isApprox(rotation_from_rpy(rpy), 1e-15));
     EXPECT_TRUE(origin_elements(Vector3d::Zero(), Vector3d::Zero()).empty());
+}
+
+TEST(RotationBetween, IsTheSmallestThatTurnsOneDirectionIntoTheOther) {
+    RandomStream stream(5);
+    for (Index i = 0; i < sweep_count(); ++i) {
+        const Vector3d from = random_vector(stream, 3, 2);
+        const Vector3d to = random_vector(stream, 3, 2);
+        const Matrix3d R = rotation_between(from, to);
+        EXPECT_LT((R * from.normalized() - to.normalized()).norm(), 1e-13);
+        const Vector3d turn = vector_from_rotation(R);
+        EXPECT_LT(std::abs(turn.dot(from)), 1e-12);
+        EXPECT_LT(std::abs(turn.dot(to)), 1e-12);
+        EXPECT_LT((R * R.transpose() - Matrix3d::Identity()).norm(), 1e-13);
+        EXPECT_GT(R.determinant(), 0);
+        const Matrix3d half_turn = rotation_between(from, -2 * from);
+        EXPECT_LT((half_turn * from + from).norm(), 1e-13);
+        EXPECT_GT(half_turn.determinant(), 0);
+    }
 }
 
 TEST(JointElements, TurnAboutAndSlideAlongAnyAxis) {

@@ -132,6 +132,8 @@ needless = [
     ("select", {"repeats": 3}, "campaign"),
     ("select", {"focus": "robot"}, "campaign"),
     ("select", {"force": True}, "estimate"),
+    ("relax", {"repeats": 3}, "campaign"),
+    ("relax", {"force": True}, "estimate"),
     ("plan", {"quantity": "p95"}, "target_mm"),
     ("plan", {"assurance": 0.9}, "target_mm"),
     ("plan", {"robust_to": 1}, "minutes"),
@@ -152,8 +154,8 @@ needless = [
 
 @pytest.mark.parametrize(("function", "keywords", "other"), needless)
 def test_keywords_without_effect(fanuc, measurements, blocks, function, keywords, other):
-    source = {"select": (blocks, 5), "plan": (fanuc, 14), "calibrate": (fanuc, measurements),
-              "study": (fanuc,)}[function]
+    source = {"select": (blocks, 5), "relax": (blocks, 5), "plan": (fanuc, 14),
+              "calibrate": (fanuc, measurements), "study": (fanuc,)}[function]
     with pytest.raises(pw.InputError) as error:
         getattr(pw, function)(*source, **keywords)
     assert error.value.field in keywords or error.value.field == "poses"

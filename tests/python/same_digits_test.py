@@ -89,6 +89,21 @@ def test_choice_from_blocks(run, blocks, tmp_path):
         assert choice.value == pytest.approx(pw.indices(blocks, choice.poses)[criterion], rel=1e-13)
 
 
+def test_weights(run, fanuc, fanuc_path, measurements, measurements_path, blocks, tmp_path):
+    np.savetxt(tmp_path / "J.csv", blocks.reshape(-1, 8), delimiter=",", fmt="%.17g")
+    printed = run("select", "--blocks", "J.csv", "--rows", 3, "-k", 6, "--relax", cwd=tmp_path)
+    found = pw.relax(blocks, 6)
+    assert_same(found.document, printed)
+    assert found.weights.sum() == pytest.approx(6, rel=1e-12) and found.weights.max() <= 1
+    M = np.einsum("n,nri,nrj->ij", found.weights, *2 * [blocks[found.weights.index]])
+    assert found.value == pytest.approx(np.linalg.slogdet(M)[1], rel=1e-12)
+    assert pw.select(blocks, 6).value <= found.bound
+    printed = run("select", fanuc_path, "-m", measurements_path, "-k", 14, "--relax", cwd=tmp_path)
+    found = pw.relax(fanuc, 14, measurements=measurements)
+    assert_same(found.document, printed)
+    assert set(found.weights.index) <= set(measurements["config"])
+
+
 def test_plan(run, fanuc, fanuc_path, tmp_path):
     printed = run("plan", fanuc_path, "-k", 14, "-c", "d", "--pool", 300, "--workspace-poses", 50,
                   "--verification", 3, "--csv", "poses.csv", cwd=tmp_path)

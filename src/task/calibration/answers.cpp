@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/decompositions.hpp"
 #include "core/statistics.hpp"
 #include "posewise/task/calibration.hpp"
 
@@ -73,10 +74,8 @@ class Remainder {
   public:
     explicit Remainder(const MatrixXd& columns) {
         constexpr double dependent = 1e-6;
-        Eigen::ColPivHouseholderQR<MatrixXd> qr(columns.rows(), columns.cols());
-        qr.setThreshold(dependent);
-        qr.compute(columns * columns.colwise().norm().cwiseMax(1e-300).cwiseInverse().asDiagonal());
-        basis_ = qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());
+        basis_ = detail::PivotedReflections(detail::with_columns_of_norm_one(columns), dependent)
+                     .basis();
     }
     VectorXd operator()(const VectorXd& values) const {
         return values - basis_ * (basis_.transpose() * values);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "calibrator/least_squares.hpp"
+#include "core/decompositions.hpp"
 #include "model/complete_model.hpp"
 #include "posewise/planner/prediction.hpp"
 
@@ -57,7 +58,7 @@ double largest_left_over(const Campaign& campaign, const Parameters& at,
     if (fitted.cols() > 0) {
         MatrixXd by_robot = MatrixXd::Zero(fitted.rows(), of_robot);
         by_robot.topRows(J.rows()) = J.middleCols(of_base, of_robot);
-        const MatrixXd followed = fitted.colPivHouseholderQr().solve(by_robot);
+        const MatrixXd followed = PivotedReflections(fitted).solve(by_robot);
         along.topRows(of_base) = -followed.topRows(of_base);
         along.bottomRows(of_sensor) = -followed.bottomRows(of_sensor);
     }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/decompositions.hpp"
 #include "core/statistics.hpp"
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/calibrator/identification.hpp"
@@ -128,7 +129,7 @@ double scatter_about_poses(const Campaign& campaign, const Measurements& measure
             const MatrixXd A = J(rows, Eigen::all);
             const VectorXd r = (measured.observations.row(sample).transpose() - predicted)
                                    .cwiseQuotient(sigmas)(rows);
-            const VectorXd unexplained = r - A * A.colPivHouseholderQr().solve(r);
+            const VectorXd unexplained = r - A * detail::PivotedReflections(A).solve(r);
             variances.push_back(unexplained.squaredNorm() / static_cast<double>(left));
         }
     }
