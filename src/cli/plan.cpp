@@ -241,7 +241,7 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
         ->default_val(Index{20000});
     command
         .add_option("--starts", request.starts,
-                    "Plans refined before the best is kicked (default: 5; 16 in a cell and where "
+                    "Plans refined before the best is kicked (default: 10; 16 in a cell and where "
                     "poses hardly suffice)")
         ->check(whole_number(1, 100000));
     add_search_options(command, arguments, "Seed of all draws (default: the campaign's)",

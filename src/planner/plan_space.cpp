@@ -23,7 +23,7 @@ namespace {
 constexpr Index test_pose_limit = 500;
 // Where their number is not stated; along constraints refinement finds less, and kicks less still,
 // and where poses hardly suffice optima differ much.
-constexpr Index usual_starts = 5;
+constexpr Index usual_starts = 10;
 constexpr Index more_starts = 16;
 constexpr Index kicks_at_once = 4;  // whatever the number of threads
 constexpr Index draws_a_pose = 30;  // of the pool, the most sensitive of which replaces a pose
@@ -62,7 +62,7 @@ SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
     select.kicks = options.criterion == Criterion::G ? 0 : 4;
     // Its bound is that of the relaxation: a search of all choices gains little there.
     select.proof = space.is_pool_only ? 0.01 : 0;
-    select.gap = 1e-3;
+    select.gap = 1e-2;
     if (space.least_joint_distance > 0) {
         // Selection measures by Euclid: at distance d sqrt(n) one joint differs by d at least.
         select.positions = pool;
@@ -295,7 +295,7 @@ Index patience(const Search& problem) {
     const auto K = static_cast<double>(problem.options.pose_count);
     const double each = 10 * std::max(0.5, std::min({std::sqrt(1e5 / (L * L * K)), K / 12, 2.0}));
     const bool is_quick = is_smooth(problem.options.criterion) && !problem.space.margin;
-    return static_cast<Index>(each * (is_quick ? 1 : 0.1) *
+    return static_cast<Index>(each * (is_quick ? 0.3 : 0.1) *
                               static_cast<double>(start_limit(problem)));
 }
 

@@ -84,7 +84,10 @@ class Refiner {
             is_swept_ = true;
             if (round == 0 && !is_promising(objective)) return;
             move_together(objective);
-            if (current(objective) - before > tolerance) continue;
+            const double after = current(objective);
+            // Along constraints a round is the first step.
+            if (round == 0 && is_constrained() && !is_near_worth(objective, before, after)) return;
+            if (after - before > tolerance) continue;
             ending_ = Ending::Converged;
             return;
         }
@@ -119,12 +122,16 @@ class Refiner {
     /// Whether first steps of all poses together come near what it is worth to go on for.
     bool is_promising(const Objective& objective) {
         constexpr int first_steps = 20;
-        constexpr double most_missing = 0.5;  // of what they gain
         if (std::isinf(options_.worth) || is_constrained()) return true;
         const double before = current(objective);
         move_together(objective, first_steps);
-        const double after = current(objective);
-        return merit_of(objective, options_.worth) - after <= most_missing * (after - before);
+        return is_near_worth(objective, before, current(objective));
+    }
+
+    /// Whether less is missing than half of what was gained.
+    bool is_near_worth(const Objective& objective, double before, double after) const {
+        if (std::isinf(options_.worth)) return true;
+        return merit_of(objective, options_.worth) - after <= 0.5 * (after - before);
     }
 
     bool is_constrained() const { return space_.margin || space_.least_joint_distance > 0; }

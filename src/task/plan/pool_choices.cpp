@@ -23,7 +23,7 @@ PoolChoices::PoolChoices(const Campaign& campaign, const Pool& pool, double repe
     select_.starts = 1;
     select_.kicks = 0;
     select_.proof = 0;
-    select_.gap = 1e-2;
+    select_.gap = 0.05;
     select_.seed = search.seed;
 }
 
