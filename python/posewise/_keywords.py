@@ -75,7 +75,9 @@ _needs: dict[str, dict[str, list[str]]] = {
 }
 
 # Pairs that exclude each other.
+_of_effort = [("effort", "starts"), ("effort", "proof")]
 _of_choice = [
+    *_of_effort,
     ("as_prior", "prior=False"),
     ("candidates", "measurements"),
     ("candidates", "random"),
@@ -85,6 +87,7 @@ _excludes: dict[str, list[tuple[str, str]]] = {
     "select": _of_choice,
     "relax": _of_choice,
     "plan": [
+        *_of_effort,
         ("as_prior", "prior=False"),
         ("poses", "target_mm"),
         ("poses", "minutes"),
@@ -111,7 +114,7 @@ _excludes: dict[str, list[tuple[str, str]]] = {
         ("sizes='learned'", "loss='huber'"),
         ("sizes='learned'", "loss='cauchy'"),
     ],
-    "study": [("holdout", "splits=0")],
+    "study": [*_of_effort, ("holdout", "splits=0")],
 }
 
 

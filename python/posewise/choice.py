@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -178,6 +179,7 @@ def select(
     as_prior: bool | None = None,
     only: Sequence[str] | None = None,
     moved: Sequence[str] | None = None,
+    effort: str | None = None,
     starts: int | None = None,
     proof: float | None = None,
     seed: int | None = None,
@@ -204,8 +206,9 @@ def select(
     standard deviation), standard deviations, or a covariance. ``held`` is measured already; its
     information counts: Jacobians, of a campaign a table of measurements. ``exclude`` are ids not to
     choose (of Jacobians their numbers), ``groups`` with ``per_group`` the group of each candidate and
-    how many of one may be chosen; ``repeat_limit`` (1) how often one may be. Other options, with
-    their defaults, are those of ``posewise select --help``.
+    how many of one may be chosen; ``repeat_limit`` (1) how often one may be. ``effort`` is "quick"
+    (one start, no proof but the first bound), "usual" or "thorough" (40 starts, up to 20 s of proof).
+    Other options, with their defaults, are those of ``posewise select --help``.
 
     ``time`` ends the search after that many seconds with the best choice so far; Ctrl-C raises
     :class:`posewise.Interrupted`, whose ``result`` it is. ``progress`` is called as ``progress(done,
@@ -234,6 +237,7 @@ def select(
             "as_prior": as_prior,
             "only": names("only", only),
             "moved": names("moved", moved),
+            "effort": effort,
             "starts": starts,
             "proof": proof,
             "seed": seed,
@@ -436,9 +440,16 @@ def indices(
     chosen = blocks.matrix.reshape(count, blocks.rows, -1)[taken].reshape(-1, blocks.matrix.shape[1])
     sizes = np.eye(blocks.matrix.shape[1] if prior_flag(prior) else 0, blocks.matrix.shape[1])
     with Files():
-        values = _posewise.rate_blocks(
+        rated = _posewise.rate_blocks(
             np.vstack([chosen, blocks.held, blocks.prior, sizes]),
             len(taken) + blocks.held_count,
             blocks.core(),
         )
-    return pd.Series(dict(values), name="value")
+    criteria, values = zip(*rated)
+    return pd.Series(np.array(values), index=_index(criteria).view(), name="value")
+
+
+@lru_cache(maxsize=1)
+def _index(labels: tuple[str, ...]) -> pd.Index:
+    """Made once: to make one takes longer than to rate a few poses."""
+    return pd.Index(labels)

@@ -110,6 +110,7 @@ constexpr std::pair<std::string_view, Group> group_of_option[] = {
     {"drift-mrad", Rare},
     {"force", Rare},
     {"pool", Search},
+    {"effort", Search},
     {"starts", Search},
     {"proof", Search},
     {"seed", Search},

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/effort.hpp"
 #include "core/text.hpp"
 #include "io/format/text.hpp"
 
@@ -79,6 +80,20 @@ CLI::Option* add_ids_option(CLI::App& command, const std::string& name,
     };
     return command.add_option_function<std::vector<std::string>>(name, split, help)
         ->expected(1, -1);
+}
+
+void add_effort_option(CLI::App& command, Index& starts, std::optional<double>* proof) {
+    CLI::Option* const effort = command.add_option_function<std::string>(
+        "--effort",
+        [&starts, proof](const std::string& word) {
+            detail::set_effort(*detail::find_named(detail::effort_names, word), starts, proof);
+        },
+        "How long searches go on: quick (one start, no proof but the first bound), usual, or "
+        "thorough (40 starts, up to 20 s of proof)");
+    effort->check(CLI::IsMember(detail::words_of(detail::effort_names)));
+    for (const char* const name : {"--starts", "--proof"}) {
+        if (CLI::Option* const other = command.get_option_no_throw(name)) effort->excludes(other);
+    }
 }
 
 void add_prior_option(CLI::App& command, std::optional<bool>& prior,

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "posewise/core/types.hpp"
+
 /// Checks of what an option may hold; anything else is a usage error.
 namespace posewise::cli {
 
@@ -26,6 +28,9 @@ CLI::Validator file_name();
 CLI::Option* add_ids_option(CLI::App& command, const std::string& name,
                             std::vector<std::string>& ids, const std::string& help,
                             const std::vector<std::string>& allowed = {});
+
+/// --effort: sets `starts` and, unless it is null, `proof`; excludes the options of these names.
+void add_effort_option(CLI::App& command, Index& starts, std::optional<double>* proof = nullptr);
 
 /// --prior and --no-prior; `consequence` ends the help's sentence.
 void add_prior_option(CLI::App& command, std::optional<bool>& prior,

@@ -244,6 +244,7 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
                     "Plans refined before the best is kicked (default: 10; 16 in a cell and where "
                     "poses hardly suffice)")
         ->check(whole_number(1, 100000));
+    add_effort_option(command, request.starts);
     add_search_options(command, arguments, "Seed of all draws (default: the campaign's)",
                        "<campaign>.poses.json");
     add_verification_options(command, arguments.verification);

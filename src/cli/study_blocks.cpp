@@ -18,10 +18,10 @@ namespace {
 
 void check_usage(const CLI::App& command, const StudyArguments& arguments) {
     const BlocksStudyArguments& plain = arguments.plain;
-    check_only(command,
-               {"--blocks", "--rows", "--variable", "--subset", "--augment", "--criteria",
-                "--poses", "--random", "--exclude", "--prior", "--starts", "--seed", "--time",
-                "--csv", "--plot", "--report", "--progress", "--json", "--help"},
+    check_only(command, {"--blocks",   "--rows",   "--variable", "--subset",  "--augment",
+                         "--criteria", "--poses",  "--random",   "--exclude", "--prior",
+                         "--starts",   "--effort", "--seed",     "--time",    "--csv",
+                         "--plot",     "--report", "--progress", "--json",    "--help"},
                "is not of a study of plain blocks (--blocks); must be left out");
     check_blocks_usage(plain.blocks, plain.sources);
     if (arguments.options.pose_counts.empty() && plain.subsets.empty()) {
@@ -38,7 +38,8 @@ BlocksStudyOptions options_of(const CLI::App& command, const StudyArguments& arg
     options.random_subsets = arguments.random_subsets.value_or(options.random_subsets);
     options.excluded = arguments.excluded;
     options.has_prior = arguments.prior.value_or(false);
-    if (command.count("--starts") > 0) options.starts = arguments.options.starts;
+    options.proof = arguments.proof;
+    if (command.count("--starts") > 0 || options.proof) options.starts = arguments.options.starts;
     options.seed = arguments.seed;
     return options;
 }

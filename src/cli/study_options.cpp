@@ -138,6 +138,7 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
     command.add_option("--starts", arguments.options.starts, "Starts of each exchange")
         ->check(whole_number(1, 1000000))
         ->capture_default_str();
+    add_effort_option(command, arguments.options.starts, &arguments.proof);
     command.add_option("--seed", arguments.seed, "Of all random choices (default: the campaign's)")
         ->check(whole_number(0, largest_seed));
     command

@@ -32,7 +32,8 @@ struct StudyArguments {
     double least_distance_deg = 0;
     std::optional<Index> random_subsets;
     std::optional<std::uint64_t> seed;
-    double time_limit = 0;  ///< s; 0: none
+    std::optional<double> proof;  ///< s, as --effort says; of plain blocks only
+    double time_limit = 0;        ///< s; 0: none
     std::string csv;
     std::string plot;
     std::string page;

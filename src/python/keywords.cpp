@@ -1,6 +1,7 @@
 #include "keywords.hpp"
 
 #include "calibrator/loss.hpp"
+#include "core/effort.hpp"
 #include "io/format/fields.hpp"
 #include "posewise/core/types.hpp"
 #include "task/calibration/calibration_options.hpp"
@@ -76,6 +77,12 @@ void set_earlier(const Stated& stated, EarlierUse& use) {
     stated.in(1e-3, "drift_mrad", use.drift.angle, drift);
 }
 
+void read_effort(const Stated& stated, Index& starts, std::optional<double>* proof = nullptr) {
+    detail::Effort effort = detail::Effort::Usual;
+    stated("effort", effort, OneOf(detail::effort_names));
+    detail::set_effort(effort, starts, proof);
+}
+
 void read_prior(const Stated& stated, std::optional<bool>& prior) {
     if (stated.has("prior")) stated("prior", prior.emplace());
 }
@@ -109,6 +116,7 @@ PlanCall choice_call(const Keywords& keywords) {
     const Stated stated(keywords);
     PlanCall call = read_call(stated);
     PlanRequest& request = call.request;
+    read_effort(stated, request.starts, &request.proof);
     stated("candidates", request.sources.candidates);
     stated("measurements", request.sources.candidates);
     stated("random", call.random_count, Count{1, most_drawn});
@@ -128,6 +136,7 @@ PlanCall planning_call(const Keywords& keywords) {
     const Stated stated(keywords);
     PlanCall call = read_call(stated);
     PlanRequest& request = call.request;
+    read_effort(stated, request.starts);
     if (!stated.has("repeats")) request.repeats = 1;
     stated("repair", request.sources.repaired);
     stated("drop", request.dropped);
@@ -196,6 +205,7 @@ StudyCall study_call(const Keywords& keywords) {
     if (!call.measurements.empty()) options.random_subsets = StudyOptions().random_subsets;
     stated("random", options.random_subsets, Count{0, most_poses});
     stated.in(degree, "least_distance_deg", options.least_distance, Number{.least = 0});
+    read_effort(stated, options.starts);
     stated("starts", options.starts, Count{1, 1000000});
     stated("seed", options.seed);
     stated("exclude", call.excluded);
@@ -221,6 +231,7 @@ BlocksStudyOptions blocks_study_options(const Keywords& keywords) {
     stated("prior", options.has_prior);
     stated("exclude", options.excluded);
     stated("repeat_limit", options.repeat_limit, Count{1, most_poses});
+    read_effort(stated, options.starts, &options.proof);
     stated("starts", options.starts, Count{0, 1000000});
     stated("proof", options.proof, Number{.least = 0, .most = 1e9});
     stated("seed", options.seed);

@@ -91,6 +91,24 @@ TEST_F(Select, ChoosesFromPlainBlocksWithoutARobot) {
     EXPECT_EQ(number_behind(text, "efficiency:"), 1);
 }
 
+TEST_F(Select, EffortStandsForStartsAndProof) {
+    const auto search = [&](const std::string& options) {
+        run_well("select " + plain_ + "-k 6 -c v -o p.json " + options);
+        return plan("p.json").at("search");
+    };
+    EXPECT_EQ(search("--effort quick"), search("--starts 1 --proof 0"));
+    EXPECT_EQ(search("--effort usual"), search(""));
+    EXPECT_EQ(search("--effort thorough"), search("--starts 40 --proof 20"));
+    for (const char* const wrong : {"--effort quick --starts 3", "--effort hard"}) {
+        EXPECT_EQ(run("select " + plain_ + "-k 6 " + wrong).code, 2) << wrong;
+    }
+    const std::string fanuc = "plan " + fanuc_design + " -k 14 --pool 200 --workspace-poses 20 -o ";
+    run_well(fanuc + "quick.json --effort quick");
+    run_well(fanuc + "one.json --starts 1");
+    EXPECT_EQ(plan("quick.json").at("search"), plan("one.json").at("search"));
+    EXPECT_EQ(plan("quick.json").at("poses"), plan("one.json").at("poses"));
+}
+
 TEST_F(Select, SaysThatTheBoundIsLooseAtFewPoses) {
     const std::string text = run_well("select " + fanuc_design + " --random 200 -k 5");
     EXPECT_LT(number_behind(text, "efficiency:"), 0.9);

@@ -132,6 +132,8 @@ needless = [
     ("select", {"repeats": 3}, "campaign"),
     ("select", {"focus": "robot"}, "campaign"),
     ("select", {"force": True}, "estimate"),
+    ("select", {"effort": "quick", "starts": 3}, "starts"),
+    ("plan", {"effort": "quick", "starts": 3}, "starts"),
     ("relax", {"repeats": 3}, "campaign"),
     ("relax", {"force": True}, "estimate"),
     ("plan", {"quantity": "p95"}, "target_mm"),
@@ -175,6 +177,13 @@ def test_a_text_is_no_list_of_names(fanuc, measurements, name):
     with pytest.raises(pw.InputError, match=r"list of names: \['23'\]") as error:
         pw.calibrate(fanuc, measurements, **{name: "23"})
     assert error.value.field == name
+
+
+def test_effort_stands_for_starts_and_proof(blocks):
+    quick = pw.select(blocks, 6, criterion="v", effort="quick")
+    assert quick == pw.select(blocks, 6, criterion="v", starts=1, proof=0)
+    with pytest.raises(pw.InputError, match="quick"):
+        pw.select(blocks, 6, effort="hard")
 
 
 def test_priors(blocks):

@@ -244,8 +244,8 @@ Vector3d vector_from_rotation(const Matrix3d& R);
 /// Rotation nearest to a matrix (least squares), by its singular values.
 Matrix3d nearest_rotation(const Matrix3d& X);
 
-/// The smallest rotation that turns the direction of `from` into that of `to`; of opposite ones, one
-/// of those by 180 deg.
+/// The smallest rotation that turns the direction of `from` into that of `to`; of opposite ones,
+/// one of those by 180 deg.
 Matrix3d rotation_between(const Vector3d& from, const Vector3d& to);
 
 /// Left Jacobian of SO(3) [Barfoot 2017, (7.77)]: while a rotation vector changes at the rate r,
