@@ -86,12 +86,14 @@ TEST_F(BadInput, AnInterruptEndsAStudyAtOnceWithoutFiles) {
 
 TEST_F(BadInput, ASignalWhileGnuplotHangsLeavesNothing) {
     std::filesystem::create_directory(folder_ / "tmp");
-    const std::string path = with_program("gnuplot", "touch reached; exec sleep 1000\n");
+    std::string path = with_program("gnuplot", "");
     const auto files = file_count();
     for (const std::string signal : {"INT", "TERM"}) {
-        const Outcome outcome = run(
-            "study c.yaml -m s.csv --poses 8 --random 2 --plot a.svg",
-            "TMPDIR=\"$PWD/tmp\" " + path + " timeout --preserve-status -k 20 -s " + signal + " 8");
+        path = with_program("gnuplot",
+                            "touch reached; kill -s " + signal + " $PPID; exec sleep 1000\n");
+        const Outcome outcome =
+            run("study c.yaml -m s.csv --poses 8 --random 2 --plot a.svg",
+                "TMPDIR=\"$PWD/tmp\" " + path + " timeout --preserve-status -k 20 60");
         EXPECT_NE(outcome.code, 0) << signal;
         EXPECT_TRUE(std::filesystem::remove(folder_ / "reached")) << signal;
         EXPECT_TRUE(std::filesystem::is_empty(folder_ / "tmp")) << signal;

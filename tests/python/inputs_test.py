@@ -344,7 +344,7 @@ def test_files_are_read_again(fanuc, measurements, tmp_path):
 
 def test_a_calibration_from_points_and_a_plan(tmp_path):
     campaign = pw.Campaign.from_yaml(designs / "cell_demo" / "campaign.yaml")
-    plan = pw.plan(campaign, 16, criterion="d", pool=400, workspace_poses=50)
+    plan = pw.plan(campaign, 16, criterion="d", pool=400, workspace_poses=50, effort="quick")
     targets = plan.targets
     points = targets.loc[targets["visible"] == "yes", ["name", "x_mm", "y_mm", "z_mm"]]
     estimate = pw.calibrate(campaign, points.sample(frac=1, random_state=1), plan=plan, force=True)
