@@ -93,7 +93,7 @@ WAYS = [
 # way, no sliding joint, few parameters, no error that depends on the configuration, one choice that all starts end at.
 KNOWN = {("calibrate", "--force"), ("export", "--force"), ("correct", "--force"), ("study", "--force"),
          ("correct", "--largest-change-mm"), ("calibrate", "--all-parameters"), ("export", "--geometry"),
-         ("export", "--workspace"), ("study", "--starts"), ("plan", "--strict"), ("select", "--force"),
+         ("export", "--workspace"), ("study", "--starts"), ("study", "--effort"), ("plan", "--strict"), ("select", "--force"),
          ("program", "--campaign")}
 # What makes an option without a value quick.
 WITH = {"--verify": ["--verify-robots", "200"]}

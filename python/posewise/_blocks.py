@@ -113,7 +113,11 @@ def make_blocks(
     if prior is not None and prior_flag(prior) is None:
         prior_rows = _prior_rows(prior, columns)
     if test_poses is not None:
-        tests, _ = _beside(test_poses, "test_poses", rows)
+        tests, test_rows = _beside(test_poses, "test_poses", rows)
+        if test_rows != rows:
+            raise InputError(
+                f"`test_poses` has {test_rows} rows for each pose; must have {rows}, as J"
+            )
     for name, array in (("held", known), ("test_poses", tests)):
         if array.shape[1] != columns:
             raise InputError(f"`{name}` has {array.shape[1]} parameters; must have {columns}, as J")
@@ -126,6 +130,8 @@ def _beside(value: Any, name: str, rows: int) -> tuple[Array, int]:
     stacked, own = as_blocks(array, name, rows if array.ndim == 2 else None)
     if len(stacked) % own != 0:
         raise InputError(f"`{name}` has {len(stacked)} rows; must have {own} for each pose")
+    if not np.isfinite(stacked).all():
+        raise InputError(f"`{name}` has a value that is no finite number; must have none")
     return stacked, own
 
 

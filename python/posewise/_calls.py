@@ -76,6 +76,7 @@ _beginnings = {
 def with_keywords(message: str, count: str = "poses") -> str:
     """The message with arguments of Python in place of the library's fields; ``count`` is what the
     call names its number of poses."""
+    message = re.sub(r"test poses are test_poses\b", "test poses are given", message)
     for beginning, words in _beginnings.items():
         message = re.sub(rf"^([^`]*: )?{beginning}", lambda m: (m.group(1) or "") + words, message)
     message = re.sub(r"`([\w.]+)`", lambda m: f"`{_keywords.get(m.group(1), m.group(1))}`", message)
@@ -164,8 +165,8 @@ def check_text(text: str, name: str) -> str:
     return text
 
 
-def as_json(function: str, keywords: Mapping[str, Any]) -> str:
-    """The keywords that are stated, for the library to read."""
+def as_json(function: str, keywords: Mapping[str, Any], count: str = "poses") -> str:
+    """The keywords that are stated, for the library to read; ``count`` as in with_keywords()."""
     stated = {}
     for key, value in keywords.items():
         if value is None:
@@ -174,8 +175,9 @@ def as_json(function: str, keywords: Mapping[str, Any]) -> str:
             stated[key] = _plain(value)
             json.dumps(stated[key], allow_nan=False, ensure_ascii=False).encode()
         except (TypeError, ValueError, RecursionError):
+            name = count if key == "poses" else key
             raise InputError(
-                f"{function}(): {key} is {shortened(value)}, which is no number or text"
+                f"{function}(): {name} is {shortened(value)}, which is no number or text"
             ) from None
     return json.dumps(stated)
 

@@ -35,6 +35,7 @@ _needs: dict[str, dict[str, list[str]]] = {
         **_of_estimate,
         "rows": ["Jacobians"],
         "force": ["estimate", "measurements"],
+        "seed": ["random"],
         **_of_robot,
     },
     "plan": {

@@ -43,11 +43,13 @@ class Result:
         return "\n".join([f"{kind} of {self.document['campaign']}{poses}", *answers])
 
     def _repr_html_(self: Shown) -> str:
-        """What people ask of a result first, as a page shows it."""
+        """What people ask of a result first, as a page shows it; else its text."""
+        if not self.document.get("answers"):
+            return f"<pre>{escape(str(self))}</pre>"
         rows = "".join(
             f"<tr><th style='text-align:left'>{escape(a['question'])}</th>"
             f"<td style='text-align:left'>{escape(a['text'])}</td></tr>"
-            for a in self.document.get("answers", [])
+            for a in self.document["answers"]
         )
         return f"<table>{rows}</table>"
 

@@ -84,7 +84,8 @@ class Estimate(Result):
 
     @property
     def accuracy(self) -> pd.DataFrame:
-        """Errors in mm (mrad): nominal (base and targets fitted), fit, fit_means and held_out."""
+        """Errors in mm (mrad): nominal (base and targets fitted), fit, fit_means,
+        held_out and held_out_means; means are those of each configuration's samples."""
         stated = dict(self.document["accuracy"])
         rows = {
             name: stated[name] for name in ("nominal", "fit", "fit_means") if stated.get(name)

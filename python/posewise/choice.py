@@ -204,7 +204,8 @@ def select(
 
     ``prior`` (H) says what is known before: True (of scaled columns: each parameter's size is its
     standard deviation), standard deviations, or a covariance. ``held`` is measured already; its
-    information counts: Jacobians, of a campaign a table of measurements. ``exclude`` are ids not to
+    information counts: Jacobians (in two dimensions stacked rows, as many a pose as J has; so are
+    ``test_poses``), of a campaign a table of measurements. ``exclude`` are ids not to
     choose (of Jacobians their numbers), ``groups`` with ``per_group`` the group of each candidate and
     how many of one may be chosen; ``repeat_limit`` (1) how often one may be. ``effort`` is "quick"
     (one start, no proof but the first bound), "usual" or "thorough" (40 starts, up to 20 s of proof).
@@ -307,7 +308,7 @@ class _Asked:
     def call(self, of_blocks: Any, of_campaign: Any, options: Any) -> tuple[str, str, list[str]]:
         """Document, text and warnings, by the one or the other of the library's functions."""
         with Files("k") as files:
-            keywords = as_json(self.function, {**self.keywords, **files.open(self.files)})
+            keywords = as_json(self.function, {**self.keywords, **files.open(self.files)}, "k")
             if isinstance(self.inputs, Blocks):
                 return files.named(of_blocks(self.inputs.core(), keywords, options))
             return files.named(of_campaign(self.inputs._core, keywords, options))
@@ -359,7 +360,8 @@ def relax(
     """Weights the candidates, 0 to ``repeat_limit`` (1) each and ``k`` in all, instead of choosing.
 
     This is the approximate design that :func:`select` proves its bound with: the continuous problem
-    whose largest weights are often taken as a choice. Arguments are those of :func:`select`.
+    whose largest weights are often taken as a choice. Arguments are as those of :func:`select`, as
+    far as weights have them. o2 and o4 are not concave: their weights may be a local optimum.
 
     >>> import numpy as np
     >>> J = np.random.default_rng(1).normal(size=(50, 3, 6))
@@ -407,6 +409,8 @@ def design(X: npt.ArrayLike, k: int, **keywords: Any) -> Choice:
     >>> design(X, 4).ids
     ['0', '2', '6', '8']
     """
+    if "rows" in keywords:
+        raise InputError("design(): `rows` is always 1; leave it out")
     matrix = numbers(X, "X", "an array of numbers, (candidates, parameters)")
     if matrix.ndim != 2:
         raise InputError(f"`X` has the shape {matrix.shape}; must be (candidates, parameters)")
@@ -437,6 +441,8 @@ def indices(
         raise InputError(f"`rows` is {blocks.rows}; must divide the {len(blocks.matrix)} rows of J")
     count = len(blocks.matrix) // blocks.rows
     taken = list(range(count)) if poses is None else pose_indices(poses, count, "poses")
+    if not taken:
+        raise InputError("`poses` names none; must name some")
     chosen = blocks.matrix.reshape(count, blocks.rows, -1)[taken].reshape(-1, blocks.matrix.shape[1])
     sizes = np.eye(blocks.matrix.shape[1] if prior_flag(prior) else 0, blocks.matrix.shape[1])
     with Files():
@@ -452,4 +458,6 @@ def indices(
 @lru_cache(maxsize=1)
 def _index(labels: tuple[str, ...]) -> pd.Index:
     """Made once: to make one takes longer than to rate a few poses."""
-    return pd.Index(labels)
+    shared = np.array(labels, dtype=object)
+    shared.flags.writeable = False
+    return pd.Index(shared)

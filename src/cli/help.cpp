@@ -111,7 +111,7 @@ constexpr std::pair<std::string_view, Group> group_of_option[] = {
     {"force", Rare},
     {"pool", Search},
     {"effort", Search},
-    {"starts", Search},
+    {"starts", Rare},
     {"proof", Search},
     {"seed", Search},
     {"time", Search},

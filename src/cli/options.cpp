@@ -82,7 +82,7 @@ CLI::Option* add_ids_option(CLI::App& command, const std::string& name,
         ->expected(1, -1);
 }
 
-void add_effort_option(CLI::App& command, Index& starts, std::optional<double>* proof) {
+CLI::Option* add_effort_option(CLI::App& command, Index& starts, std::optional<double>* proof) {
     CLI::Option* const effort = command.add_option_function<std::string>(
         "--effort",
         [&starts, proof](const std::string& word) {
@@ -94,6 +94,7 @@ void add_effort_option(CLI::App& command, Index& starts, std::optional<double>* 
     for (const char* const name : {"--starts", "--proof"}) {
         if (CLI::Option* const other = command.get_option_no_throw(name)) effort->excludes(other);
     }
+    return effort;
 }
 
 void add_prior_option(CLI::App& command, std::optional<bool>& prior,

@@ -30,7 +30,8 @@ CLI::Option* add_ids_option(CLI::App& command, const std::string& name,
                             const std::vector<std::string>& allowed = {});
 
 /// --effort: sets `starts` and, unless it is null, `proof`; excludes the options of these names.
-void add_effort_option(CLI::App& command, Index& starts, std::optional<double>* proof = nullptr);
+CLI::Option* add_effort_option(CLI::App& command, Index& starts,
+                               std::optional<double>* proof = nullptr);
 
 /// --prior and --no-prior; `consequence` ends the help's sentence.
 void add_prior_option(CLI::App& command, std::optional<bool>& prior,

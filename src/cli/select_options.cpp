@@ -79,14 +79,17 @@ void add_select_search(CLI::App& command, SelectArguments& arguments) {
         .add_option("--proof", arguments.request.proof,
                     "CPU seconds for branch and bound (default: 0.7 at most)")
         ->check(real_number(0, 1e9));
-    add_effort_option(command, arguments.request.starts, &arguments.request.proof);
+    CLI::Option* const effort =
+        add_effort_option(command, arguments.request.starts, &arguments.request.proof);
     add_search_options(command, arguments,
                        "Of the random starts and of --random (default: the campaign's, else 1)",
                        "<candidates>.plan.json");
     add_report_option(command, arguments.page);
     add_progress_flag(command, arguments);
-    command.add_flag("--relax", arguments.relaxes,
-                     "Weights and bound instead of a choice; --out writes them (.csv or .json)");
+    effort->excludes(
+        command.add_flag("--relax", arguments.relaxes,
+                         "Weights and bound instead of a choice; --out writes them (.csv or "
+                         ".json)"));
     add_digits_option(command, arguments.digits);
 }
 
@@ -121,8 +124,7 @@ void check_select_usage(const SelectArguments& arguments) {
     require_usage(sources.groups.empty(), "--groups", "cannot be kept by weights, --relax");
     require_usage(!has_distance, "--least-distance-deg", "cannot be kept by weights, --relax");
     require_usage(arguments.page.empty(), "--report", "shows a plan, which --relax makes none of");
-    require_usage(request.starts == 0, "--starts",
-                  "(and --effort) are of a search, which --relax does not need");
+    require_usage(request.starts == 0, "--starts", "are of a search, which --relax does not need");
     require_usage(!request.proof, "--proof", "is of a choice, which --relax makes none of");
     require_usage(!arguments.progress, "--progress", "is of a search, which --relax does not need");
     require_usage(out.empty() || out.ends_with(".csv") || out.ends_with(".json"), "--out",

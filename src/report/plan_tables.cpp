@@ -329,16 +329,19 @@ std::string format(const ApproximateDesign& design, int digits) {
     for (const auto& [id, weight] : design.weights) {
         table.rows.push_back({id, detail::format_short(weight, digits)});
     }
+    const bool has_bound = std::isfinite(design.bound);
     return fmt::format(
                "weights:    of {} of {}, for {}\ncriterion:  {}\nvalue:      {}\n"
-               "bound:      {}: no choice of {} has a larger value\n"
-               "efficiency: {} proven, {}\n",
+               "bound:      {}\nefficiency: {}, {}\n",
                design.weights.size(), detail::count_of(design.candidate_count, "candidate"),
                detail::count_of(request.pose_count, "pose"), criterion_name(request.criterion),
                detail::format_short(design.value, digits),
-               detail::format_short(design.bound, digits),
-               detail::count_of(request.pose_count, "pose"),
-               detail::format_fixed(design.efficiency, 6), ending_name(design.ending)) +
+               has_bound ? fmt::format("{}: no choice of {} has a larger value",
+                                       detail::format_short(design.bound, digits),
+                                       detail::count_of(request.pose_count, "pose"))
+                         : "none: nothing is proven",
+               has_bound ? detail::format_fixed(design.efficiency, 6) + " proven" : "unknown",
+               ending_name(design.ending)) +
            format_section("Weights, heaviest first", table);
 }
 

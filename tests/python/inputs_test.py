@@ -30,6 +30,9 @@ def message(error):
         ({"k": 6, "rows": 2}, "rows", "3 rows"),
         ({"k": 6, "held": np.ones((2, 3, 7))}, "held", "8, as J"),
         ({"k": 6, "held": "text"}, "held", "numbers"),
+        ({"k": 6, "held": np.full((2, 3, 8), np.nan)}, "held", "finite"),
+        ({"k": 6, "test_poses": np.ones((4, 2, 8))}, "test_poses", "must have 3, as J"),
+        ({"k": float("nan")}, "k", "no number"),
         ({"k": 6, "prior": np.ones(7)}, "prior", "8 standard deviations"),
         ({"k": 6, "prior": -np.ones(8)}, "prior", "above 0"),
         ({"k": 6, "prior": -np.eye(8)}, "prior", "positive definite"),
@@ -136,6 +139,7 @@ needless = [
     ("plan", {"effort": "quick", "starts": 3}, "starts"),
     ("relax", {"repeats": 3}, "campaign"),
     ("relax", {"force": True}, "estimate"),
+    ("relax", {"seed": 1}, "random"),
     ("plan", {"quantity": "p95"}, "target_mm"),
     ("plan", {"assurance": 0.9}, "target_mm"),
     ("plan", {"robust_to": 1}, "minutes"),
@@ -177,6 +181,30 @@ def test_a_text_is_no_list_of_names(fanuc, measurements, name):
     with pytest.raises(pw.InputError, match=r"list of names: \['23'\]") as error:
         pw.calibrate(fanuc, measurements, **{name: "23"})
     assert error.value.field == name
+
+
+@pytest.mark.parametrize("criterion", ["o2", "o4"])
+def test_weights_are_no_worse_than_a_choice(criterion):
+    J = np.random.default_rng(0).normal(size=(40, 2, 5))
+    J[0] *= 100  # the ascent alone ends at 1.03, the best choice has 2.41 of o4
+    found = pw.relax(J, 6, criterion=criterion)
+    assert pw.select(J, 6, criterion=criterion).value <= found.value <= found.bound
+    assert found.weights.sum() == pytest.approx(6, rel=1e-12)
+
+
+def test_weights_of_more_poses_than_they_sum_to(blocks):
+    found = pw.relax(blocks, 1)
+    M = np.einsum("n,nri,nrj->ij", found.weights, *2 * [blocks[found.weights.index]])
+    assert found.value == pytest.approx(np.linalg.slogdet(M)[1], rel=1e-12)
+    assert "bound:" in found._repr_html_()
+
+
+def test_the_names_of_criteria_are_nobodys(blocks):
+    names = pw.indices(blocks).index
+    names.name = "mine"
+    with pytest.raises(ValueError):
+        names.values[0] = "mine"
+    assert pw.indices(blocks).index.name is None
 
 
 def test_effort_stands_for_starts_and_proof(blocks):

@@ -6,6 +6,7 @@
 
 #include "choice_problem.hpp"
 #include "core/decompositions.hpp"
+#include "criteria/information_function.hpp"
 #include "criteria/prediction.hpp"
 #include "criteria/row_value.hpp"
 #include "posewise/core/errors.hpp"
@@ -30,6 +31,23 @@ std::vector<WeightedCandidate> list_weights(const ChoiceProblem& problem, const 
     return list;
 }
 
+double value_of(const ChoiceProblem& problem, const detail::Objective& objective,
+                const VectorXd& weights) {
+    return evaluate_rows(objective, detail::stack(problem.options.held_rows,
+                                                  detail::weighted_rows(problem.blocks, weights)));
+}
+
+/// O2 and O4 are not concave, so that an ascent may end below a mere choice: that choice, and where
+/// an ascent from it ends.
+std::vector<VectorXd> weights_by_choice(const ChoiceProblem& problem,
+                                        const detail::Objective& objective) {
+    const Choice choice = select_poses(problem.blocks, problem.options);
+    if (choice.poses.empty()) return {};
+    VectorXd weights = VectorXd::Zero(problem.blocks.count());
+    for (const Index pose : choice.poses) weights[pose] += 1;
+    return {weights, relax(objective, problem.blocks, problem.options, weights).weights};
+}
+
 ApproximateDesign weigh(ChoiceProblem& problem, const ChoiceOptions& options) {
     if (!options.groups.empty() || options.least_distance > 0) {
         throw InputError(
@@ -38,17 +56,26 @@ ApproximateDesign weigh(ChoiceProblem& problem, const ChoiceOptions& options) {
     SelectOptions& stated = problem.options;
     stated.stop = options.stop;
     detail::validate(problem.blocks, stated);
-    const std::string reason = detail::describe_unidentified(problem.blocks, stated);
+    SelectOptions all = stated;  // weights may be of more poses than they sum to
+    all.pose_count = problem.blocks.count();
+    const std::string reason = detail::describe_unidentified(problem.blocks, all);
     if (!reason.empty()) throw InputError(reason);
     const detail::Objective objective = detail::make_objective(problem.blocks, stated);
     const detail::Relaxation relaxation = relax(objective, problem.blocks, stated);
     ApproximateDesign design;
     design.request = problem.request;
     design.candidate_count = problem.blocks.count();
-    design.weights = list_weights(problem, relaxation.weights);
-    design.value = evaluate_rows(
-        objective,
-        detail::stack(stated.held_rows, detail::weighted_rows(problem.blocks, relaxation.weights)));
+    VectorXd weights = relaxation.weights;
+    design.value = value_of(problem, objective, weights);
+    if (!detail::has_information_function(stated.criterion)) {
+        for (const VectorXd& others : weights_by_choice(problem, objective)) {
+            const double value = value_of(problem, objective, others);
+            if (!(value > design.value)) continue;
+            design.value = value;
+            weights = others;
+        }
+    }
+    design.weights = list_weights(problem, weights);
     if (!std::isfinite(design.value)) {
         throw InputError(fmt::format(
             "no weights were found that identify all {} parameters; scale columns to about one "
