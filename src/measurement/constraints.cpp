@@ -294,15 +294,24 @@ ConstraintReport Constraints::check(const VectorXd& q) const {
     set(Constraint::TargetBoxes, box_clearance(posture));
     set(Constraint::KeepOuts, nearest_keep_out(posture).distance - cell_.safety_distance);
     set(Constraint::SelfCollision, nearest_of_robot(posture).distance - cell_.safety_distance);
-    if (cell_.sight) check_sight(posture, report);
-    if (contact_) check_contact(q, report);
-    if (view_) check_view(posture, report);
+    check_targets(q, posture, report);
     return report;
 }
 
+void Constraints::check_targets(const VectorXd& q, const Posture& posture,
+                                ConstraintReport& report) const {
+    if (cell_.sight) check_sight(posture, report);
+    if (contact_) check_contact(q, report);
+    if (view_) check_view(posture, report);
+}
+
 SeenTargets Constraints::seen(const VectorXd& q) const {
-    return cell_.sight || contact_ || view_ ? check(q).is_seen
-                                            : SeenTargets::Constant(target_count_, true);
+    ConstraintReport report;
+    report.is_seen.setConstant(target_count_, true);
+    if (!cell_.sight && !contact_ && !view_) return report.is_seen;
+    robot_.check_configuration(q);
+    check_targets(q, pose_bodies(q), report);
+    return report.is_seen;
 }
 
 double Constraints::collision_clearance(const VectorXd& q) const {

@@ -131,6 +131,8 @@ class Constraints {
     void check_contact(const VectorXd& q, ConstraintReport& report) const;
     void check_sight(const Posture& posture, ConstraintReport& report) const;
     void check_view(const Posture& posture, ConstraintReport& report) const;
+    /// Which targets are seen, and the clearances of that: all three, as far as they are asked for.
+    void check_targets(const VectorXd& q, const Posture& posture, ConstraintReport& report) const;
 
     Cell cell_;
     std::optional<Campaign> contact_;     // if something must be touched
