@@ -261,7 +261,7 @@ def select(
 
 
 class _Asked:
-    """What select() or relax() was asked for, checked; ``given`` are tables, arrays, an estimate."""
+    """What select() or relax() was asked for, checked; ``given_inputs`` are tables, arrays, an estimate."""
 
     def __init__(
         self,

@@ -56,9 +56,7 @@ ApproximateDesign weigh(ChoiceProblem& problem, const ChoiceOptions& options) {
     SelectOptions& stated = problem.options;
     stated.stop = options.stop;
     detail::validate(problem.blocks, stated);
-    SelectOptions all = stated;  // weights may be of more poses than they sum to
-    all.pose_count = problem.blocks.count();
-    const std::string reason = detail::describe_unidentified(problem.blocks, all);
+    const std::string reason = detail::describe_unidentified(problem.blocks, stated);
     if (!reason.empty()) throw InputError(reason);
     const detail::Objective objective = detail::make_objective(problem.blocks, stated);
     const detail::Relaxation relaxation = relax(objective, problem.blocks, stated);
