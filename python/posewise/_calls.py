@@ -68,6 +68,7 @@ _keywords = {
 _beginnings = {
     "pose count is": "`poses` is",
     "excluded candidate": "`exclude`:",
+    "test poses are test_poses": "`test_poses` are given",
     "test poses are": "`test_poses` are",
     "groups has": "`groups` has",
 }
@@ -76,7 +77,6 @@ _beginnings = {
 def with_keywords(message: str, count: str = "poses") -> str:
     """The message with arguments of Python in place of the library's fields; ``count`` is what the
     call names its number of poses."""
-    message = re.sub(r"test poses are test_poses\b", "test poses are given", message)
     for beginning, words in _beginnings.items():
         message = re.sub(rf"^([^`]*: )?{beginning}", lambda m: (m.group(1) or "") + words, message)
     message = re.sub(r"`([\w.]+)`", lambda m: f"`{_keywords.get(m.group(1), m.group(1))}`", message)

@@ -78,14 +78,13 @@ _needs: dict[str, dict[str, list[str]]] = {
 # Pairs that exclude each other.
 _of_effort = [("effort", "starts"), ("effort", "proof")]
 _of_choice = [
-    *_of_effort,
     ("as_prior", "prior=False"),
     ("candidates", "measurements"),
     ("candidates", "random"),
     ("measurements", "random"),
 ]
 _excludes: dict[str, list[tuple[str, str]]] = {
-    "select": _of_choice,
+    "select": [*_of_effort, *_of_choice],
     "relax": _of_choice,
     "plan": [
         *_of_effort,

@@ -228,7 +228,7 @@ def select(
         {
             "poses": k,
             "criterion": criterion,
-            "exclude": names("exclude", exclude),
+            "exclude": exclude,
             "groups": labels,
             "per_group": per_group,
             "repeat_limit": repeat_limit,
@@ -236,8 +236,8 @@ def select(
             "focus": focus,
             "repeats": repeats,
             "as_prior": as_prior,
-            "only": names("only", only),
-            "moved": names("moved", moved),
+            "only": only,
+            "moved": moved,
             "effort": effort,
             "starts": starts,
             "proof": proof,
@@ -275,7 +275,9 @@ class _Asked:
         check_kind(given_inputs["estimate"], Estimate, "estimate")
         is_robot = isinstance(source, Campaign)
         self.function = function
-        self.keywords = {**keywords, "prior": prior_flag(prior)}
+        self.keywords: dict[str, Any] = {**keywords, "prior": prior_flag(prior)}
+        for key in ("exclude", "only", "moved"):
+            self.keywords[key] = names(key, keywords[key])
         check_keywords(
             function,
             {**self.keywords, **given_inputs, "rows": rows},
@@ -375,13 +377,13 @@ def relax(
         {
             "poses": k,
             "criterion": criterion,
-            "exclude": names("exclude", exclude),
+            "exclude": exclude,
             "repeat_limit": repeat_limit,
             "focus": focus,
             "repeats": repeats,
             "as_prior": as_prior,
-            "only": names("only", only),
-            "moved": names("moved", moved),
+            "only": only,
+            "moved": moved,
             "seed": seed,
             "force": force,
             "random": random,

@@ -30,7 +30,7 @@ const double log_factor = std::log(model_error_factor);
 using LogErrors = std::array<double, 2>;
 
 /// How a configuration's readings follow from far fewer numbers x with variance 1: they are
-/// basis x + rest, beside errors with the covariance `remainder`.
+/// basis x + rest, with errors of the covariance `remainder`.
 struct Narrowed {
     MatrixXd basis;
     VectorXd rest;

@@ -21,12 +21,9 @@ MatrixXd triangular_factor(MatrixXd A) {
     return A.topRows(std::min(A.rows(), A.cols())).triangularView<Eigen::Upper>();
 }
 
-OrthogonalFactors orthogonal_factors(MatrixXd A) {
-    Eigen::Ref<MatrixXd> in_place(A);
-    const HouseholderInPlace qr(in_place);
-    const Index count = std::min(A.rows(), A.cols());
-    return {qr.householderQ() * MatrixXd::Identity(A.rows(), count),
-            A.topRows(count).triangularView<Eigen::Upper>()};
+OrthogonalFactors orthogonal_factors(const MatrixXd& A) {
+    const Reflections factors(A);
+    return {factors.Q_times(MatrixXd::Identity(A.rows(), factors.R().rows())), factors.R()};
 }
 
 Reflections::Reflections(const MatrixXd& A) : qr_(A) {

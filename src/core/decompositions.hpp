@@ -18,9 +18,9 @@ struct OrthogonalFactors {
     MatrixXd Q;
     MatrixXd R;
 };
-OrthogonalFactors orthogonal_factors(MatrixXd A);
+OrthogonalFactors orthogonal_factors(const MatrixXd& A);
 
-/// A = Q R by reflections, with the whole Q, which is not formed.
+/// Factors A = Q R by reflections; the whole Q is applied, never formed.
 class Reflections {
   public:
     Reflections() = default;
@@ -35,8 +35,8 @@ class Reflections {
     MatrixXd R_;
 };
 
-/// The same with the columns of A in the order of what is left of them beside those before. A
-/// column counts as dependent where that is at most `threshold` of the largest.
+/// Factors A with pivoted columns: the next one is that of which those before leave most. A column
+/// is dependent where they leave at most `threshold` of the largest.
 class PivotedReflections {
   public:
     /// By default the threshold is that of rounding, as Eigen has it.
@@ -73,10 +73,10 @@ struct SingularDirections {
 };
 SingularDirections singular_directions(const MatrixXd& A);
 
-/// The singular values alone, min(rows, cols) of them.
+/// Returns the singular values alone, min(rows, cols) of them.
 VectorXd singular_values_of(const MatrixXd& A);
 
-/// Of a regular square matrix.
+/// Inverts a regular square matrix.
 MatrixXd inverse_of(const MatrixXd& A);
 
 /// How many columns of A are independent, of norm 1 each: what is left of one beside those before
@@ -89,7 +89,7 @@ Index count_independent_columns(const MatrixXd& A);
 VectorXd solve_least_squares(MatrixXd A, const VectorXd& b);
 MatrixXd solve_least_squares(MatrixXd A, const MatrixXd& B);
 
-/// Of those that are as good the shortest x; the threshold as of PivotedReflections.
+/// Returns the shortest x of least |A x - b|^2; `threshold` as in PivotedReflections.
 VectorXd solve_with_least_norm(const MatrixXd& A, const VectorXd& b, double threshold);
 
 /// Eigenvalues of the symmetric M in ascending order, eigenvectors in columns.

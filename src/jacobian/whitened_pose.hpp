@@ -49,7 +49,7 @@ class WhitenedPose {
     bool is_diagonal_ = false;
     MatrixXd L_;                   ///< where N is not diagonal
     VectorXd inverse_deviations_;  ///< where it is
-    Reflections factors_;          ///< of A_, if it has more rows than columns
+    Reflections factors_;          ///< A_ = Q R, where it has more rows than columns
     MatrixXd R_;
     Matrix6d C_;
     MatrixXd K_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "call.hpp"
@@ -127,6 +128,14 @@ Result to_result(const ApproximateDesign& design, const Sentences& warnings) {
     return {io::with_sentences(io::to_json(design), warnings), format(design), warnings};
 }
 
+// Of plain blocks or of a campaign's configurations, by overload.
+constexpr auto choosing = [](auto&&... inputs) {
+    return choose(std::forward<decltype(inputs)>(inputs)...);
+};
+constexpr auto relaxing = [](auto&&... inputs) {
+    return relax_choice(std::forward<decltype(inputs)>(inputs)...);
+};
+
 /// What `compute(candidates, options)` makes of plain blocks.
 template <typename Compute>
 Result of_plain(const PlainBlocks& blocks, const Keywords& keywords,
@@ -141,18 +150,12 @@ Result of_plain(const PlainBlocks& blocks, const Keywords& keywords,
 
 Result choose_plain(const PlainBlocks& blocks, const std::string& keywords,
                     const CallOptions& options) {
-    return of_plain(blocks, parse_keywords("select", keywords), options,
-                    [](Blocks&& candidates, const ChoiceOptions& asked) {
-                        return choose(std::move(candidates), asked);
-                    });
+    return of_plain(blocks, parse_keywords("select", keywords), options, choosing);
 }
 
 Result relax_plain(const PlainBlocks& blocks, const std::string& keywords,
                    const CallOptions& options) {
-    return of_plain(blocks, parse_keywords("relax", keywords), options,
-                    [](Blocks&& candidates, const ChoiceOptions& asked) {
-                        return relax_choice(std::move(candidates), asked);
-                    });
+    return of_plain(blocks, parse_keywords("relax", keywords), options, relaxing);
 }
 
 /// What `compute(campaign, candidates, options)` makes of configurations.
@@ -174,20 +177,12 @@ Result of_campaign(const io::CampaignFile& campaign, const Keywords& keywords,
 
 Result choose_of_campaign(const io::CampaignFile& campaign, const std::string& keywords,
                           const CallOptions& options) {
-    return of_campaign(
-        campaign, parse_keywords("select", keywords), options,
-        [](const Campaign& file, Candidates&& candidates, const ChoiceOptions& asked) {
-            return choose(file, std::move(candidates), asked);
-        });
+    return of_campaign(campaign, parse_keywords("select", keywords), options, choosing);
 }
 
 Result relax_of_campaign(const io::CampaignFile& campaign, const std::string& keywords,
                          const CallOptions& options) {
-    return of_campaign(
-        campaign, parse_keywords("relax", keywords), options,
-        [](const Campaign& file, Candidates&& candidates, const ChoiceOptions& asked) {
-            return relax_choice(file, std::move(candidates), asked);
-        });
+    return of_campaign(campaign, parse_keywords("relax", keywords), options, relaxing);
 }
 
 /// A plan as it was asked for. An estimate that was taken by force may be taken again.
