@@ -95,6 +95,14 @@ void keep_freed_memory() {
 #endif
 }
 
+/// The first thread's stack has its size from the start. It would grow as it is used, and where
+/// memory is limited (`ulimit -v`) and other threads have taken the rest, that ends by a signal.
+[[gnu::noinline]] void grow_stack() {
+    constexpr std::size_t mebibyte = 1 << 20;
+    [[maybe_unused]] volatile char stack[mebibyte];
+    stack[0] = 0;  // its far end: one page is written, all between belongs to the stack then
+}
+
 void add_commands(CLI::App& program, posewise::cli::CommonOptions& common) {
     using namespace posewise::cli;
     program.require_subcommand(1);
@@ -142,6 +150,7 @@ ProgramEnd run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     posewise::cli::wait_passively(argv);
+    grow_stack();
     keep_freed_memory();
     posewise::fix_cache_sizes();
     std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is an error like a full disk
