@@ -176,7 +176,8 @@ struct ErrorPrediction {
 /// torques): for distances, then for angles, as far as the sensor measures them. The squared
 /// error of a point is taken as scaled chi squared of the same mean and variance [Satterthwaite
 /// 1946]; without priors as F, because the variance factor rests on the degrees of freedom of its
-/// kind. Throws InputError for configurations that are not the robot's, and if it is stopped.
+/// kind; with priors averaged over what the model error and the learned sizes may be.
+/// Throws InputError for configurations that are not the robot's, and if it is stopped.
 std::vector<ErrorPrediction> predict_errors(const Campaign& campaign, const Estimate& estimate,
                                             const RowMatrixXd& configurations,
                                             const StopSignal& stop = {});
