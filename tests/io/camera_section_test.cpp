@@ -102,6 +102,114 @@ TEST(ReadCamera, SaysWhatIsWrong) {
                  "at the place of point 2");
 }
 
+// ---- Boards ----
+
+/// The setup of a camera before this board; `content` is that of the file board.yaml.
+CameraSetup before(const std::string& board, const std::string& content = "") {
+    const TemporaryFolder folder;
+    folder.write("board.yaml", content);
+    return setup_of(read_campaign(
+        folder.write("c.yaml", two_joint_arm +
+                                   "sensor: {kind: camera, camera: fixed, sigma_px: 0.3,\n"
+                                   "  intrinsics: {known: false}, board: " +
+                                   board + "}\n")));
+}
+
+void expect_places(const CameraSetup& setup, std::size_t count,
+                   const std::vector<std::pair<std::size_t, Vector3d>>& places) {
+    ASSERT_EQ(setup.corners.size(), count);
+    for (const auto& [k, place] : places) {
+        EXPECT_LT((setup.corners[k] - place).norm(), 1e-12) << k;
+    }
+}
+
+const std::string charuco = "{kind: charuco, columns: 5, rows: 7, square_mm: 30, marker_mm: 22}";
+const std::string aprilgrid = "{kind: aprilgrid, columns: 3, rows: 2, tag_mm: 50, spacing: 0.3}";
+
+TEST(ReadBoard, TakesInnerCornersOfACharucoBoardByItsIds) {
+    const CameraSetup setup = before(charuco);
+    // As CharucoBoard::chessboardCorners has them.
+    expect_places(setup, 24, {{0, {0.03, 0.03, 0}}, {1, {0.06, 0.03, 0}}, {4, {0.03, 0.06, 0}}});
+    EXPECT_EQ(setup.pattern.kind, BoardPattern::Kind::Charuco);
+    EXPECT_EQ(setup.pattern.columns, 5);
+    EXPECT_NEAR(setup.pattern.marker, 0.022, 1e-15);
+    EXPECT_EQ(setup.pattern.dictionary, "DICT_4X4_50");
+    EXPECT_EQ(setup.first_corner, 0);
+    EXPECT_FALSE(setup.view.is_front_plus_z);
+}
+
+TEST(ReadBoard, TakesCharucoBoardsOfOldOpenCv) {
+    const std::string old =
+        replaced(replaced(charuco, "rows: 7", "rows: 8"), "22}", "22, legacy: true}");
+    EXPECT_TRUE(before(old).pattern.is_legacy);
+    EXPECT_FALSE(before(charuco).pattern.is_legacy);
+}
+
+TEST(ReadBoard, CountsTagCornersAsKalibrDoes) {
+    const CameraSetup setup = before(aprilgrid);
+    // Row by row of corners from the lower left: 6 in a row, the second tag 65 mm from the first.
+    expect_places(setup, 24,
+                  {{0, {0, 0, 0}},
+                   {1, {0.05, 0, 0}},
+                   {2, {0.065, 0, 0}},
+                   {6, {0, 0.05, 0}},
+                   {12, {0, 0.065, 0}},
+                   {23, {0.18, 0.115, 0}}});
+    EXPECT_EQ(setup.first_corner, 0);
+    EXPECT_TRUE(setup.view.is_front_plus_z);
+}
+
+TEST(ReadBoard, TakesTargetFilesOfKalibr) {
+    const std::string kalibr_grid =
+        "target_type: 'aprilgrid' #gridtype\ntagCols: 3\ntagRows: 2\ntagSize: 0.05\n"
+        "tagSpacing: 0.3  #ratio\n";
+    EXPECT_EQ(before("{file: board.yaml}", kalibr_grid).corners, before(aprilgrid).corners);
+    const std::string checkerboard =
+        "target_type: 'checkerboard'\ntargetCols: 6\ntargetRows: 7\nrowSpacingMeters: 0.06\n"
+        "colSpacingMeters: 0.05\n";
+    const CameraSetup setup = before("{file: board.yaml, sigma_mm: 0.3}", checkerboard);
+    expect_places(setup, 42, {{1, {0.05, 0, 0}}, {6, {0, 0.06, 0}}});
+    EXPECT_EQ(setup.pattern.kind, BoardPattern::Kind::Chessboard);
+    EXPECT_EQ(setup.pattern.rows, 7);
+    EXPECT_NEAR(setup.corner_sigma, 3e-4, 1e-15);
+}
+
+TEST(ReadBoard, TakesAFileWithTheCampaignsOwnKeys) {
+    const std::string content = "board: {columns: 3, rows: 2, square_mm: 25, first_point: 0}\n";
+    const CameraSetup setup = before("{file: board.yaml}", content);
+    EXPECT_EQ(setup.corners, before("{columns: 3, rows: 2, square_mm: 25}").corners);
+    EXPECT_EQ(setup.first_corner, 0);
+    EXPECT_EQ(before("{file: board.yaml, first_point: 1}", content).first_corner, 1);
+}
+
+TEST(ReadBoard, SaysWhatIsWrong) {
+    const auto expect_error = [](const std::string& board, const std::string& message,
+                                 const std::string& content = "") {
+        const std::string error = input_error_of([&] { before(board, content); });
+        EXPECT_NE(error.find(message), std::string::npos) << error;
+    };
+    expect_error("{columns: 5, rows: 7, square_mm: 30, marker_mm: 22}", "must state kind: charuco");
+    expect_error("{columns: 3, rows: 2, tag_mm: 50}", "must state kind: aprilgrid");
+    expect_error("{columns: 5, points_mm: []}", "unknown key 'columns'");
+    expect_error("{kind: circles}", "kind is 'circles'; must be");
+    expect_error("{columns: 50, rows: 50, square_mm: 3}", "has 2500 corners; must have at most");
+    expect_error(replaced(charuco, "columns: 5", "columns: 2"), "must be from 3");
+    expect_error(replaced(charuco, "marker_mm: 22", "marker_mm: 30"), "smaller than the squares");
+    expect_error(replaced(charuco, "22}", "22, dictionary: 4X4}"), "such as DICT_4X4_50");
+    expect_error(replaced(charuco, "22}", "22, spacing: 0.3}"), "unknown key 'spacing'");
+    expect_error(replaced(charuco, "22}", "22, legacy: true}"), "odd number of rows");
+    expect_error(replaced(aprilgrid, "0.3", "15"), "divided by a tag's side");
+    const std::string from_file = "{file: board.yaml}";
+    expect_error("{file: none.yaml}", "cannot be read");
+    expect_error("{file: board.yaml, columns: 3}", "unknown key 'columns'");
+    expect_error(from_file, "neither target_type", "columns: 3\n");
+    expect_error(from_file, "must describe the board itself", "board: {file: board.yaml}\n");
+    expect_error(from_file, "must be checkerboard or aprilgrid", "target_type: circlegrid\n");
+    const std::string tags = "target_type: aprilgrid\ntagCols: 3\ntagRows: 2\n";
+    expect_error(from_file, "board.yaml:1:1: the file has no key 'tagSize'", tags);
+    expect_error(from_file, "codeOffset", tags + "tagSize: 0.05\ntagSpacing: 0.3\ncodeOffset: 9\n");
+}
+
 // ---- Cameras from files ----
 
 const std::string opencv =

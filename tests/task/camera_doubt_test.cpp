@@ -24,7 +24,7 @@ struct Seen30 {
 /// 30 views by a fixed camera, the robot as stated to its usual errors.
 Seen30 views_of(CameraSetup setup) {
     setup.corners = chessboard(6, 4, 0.05);
-    setup.columns = 6;
+    setup.pattern.kind = BoardPattern::Kind::Chessboard;
     Campaign campaign = before_camera(tracked_campaign(fanuc()), setup);
     Simulation simulated =
         simulate(campaign, {.pose_count = 30, .repeats = 1, .truth_seed = 2, .seed = 7});

@@ -68,6 +68,21 @@ struct PlacedCamera {
     std::optional<Vector2d> image{};
 };
 
+/// What is printed on a board, for those who draw it or find it in images.
+struct BoardPattern {
+    enum class Kind {
+        Points,      ///< none: corners or markers that stand alone
+        Chessboard,  ///< of columns x rows inner corners, which are the board's corners
+        Charuco,     ///< of columns x rows squares: the corners are those inside, as OpenCV counts
+        Aprilgrid    ///< of columns x rows tags: the corners are theirs, as Kalibr counts
+    };
+    Kind kind = Kind::Points;
+    Index columns = 0, rows = 0;
+    double marker = 0;         ///< side of a marker or tag with its black border, m
+    bool is_legacy = false;    ///< a ChArUco board whose first square is white
+    std::string dictionary{};  ///< of markers or tags, as OpenCV names it: "DICT_4X4_50"
+};
+
 /// A camera that sees corners of a board, or several that are fixed to each other.
 struct CameraSetup : SingleCamera {
     /// The camera is on the flange, the board is the world; else the board is on the flange and the
@@ -80,7 +95,7 @@ struct CameraSetup : SingleCamera {
     /// corners' errors are unknowns, whose sizes are known.
     double corner_sigma = 0;
     Index first_corner = 1;  ///< number of the first one in files
-    Index columns = 0;       ///< corners in a row of a chessboard; 0 if it is no chessboard
+    BoardPattern pattern{};
     /// Whether the board may be larger or smaller than stated by a factor, 1 + board.scale, which
     /// is then the last unknown.
     bool is_scale_unknown = false;

@@ -11,17 +11,8 @@
 namespace posewise::detail {
 namespace {
 
-std::optional<YamlValue> find(const YamlValue& map, std::string_view key) {
-    if (!map.is_map()) return std::nullopt;
-    for (const YamlEntry& entry : map.entries()) {
-        if (entry.key == key) return entry.value;
-    }
-    return std::nullopt;
-}
-
 YamlValue require(const YamlValue& map, std::string_view key) {
-    if (auto value = find(map, key)) return *value;
-    throw map.error(fmt::format("has no key '{}', which a camera needs", key));
+    return require_of(map, key, "which a camera needs");
 }
 
 /// A list of numbers, or an OpenCV matrix: a map with `data`.
@@ -70,23 +61,24 @@ CameraFile read_opencv(const YamlValue& file, const std::string& own) {
     std::optional<YamlValue> coefficients;
     for (const char* const key :
          {"distortion_coefficients", "distortion_coeffs", "dist_coeffs", "dist_coeff"}) {
-        if (!coefficients) coefficients = find(file, own + key);
+        if (!coefficients) coefficients = find_of(file, own + key);
     }
     if (!coefficients) {
         throw file.error(
             "has a camera_matrix and no distortion_coefficients, as if it were cut off; must have "
             "them, 0 for a lens without distortion");
     }
-    const auto model = find(file, own + "distortion_model");
+    const auto model = find_of(file, own + "distortion_model");
     const bool is_fisheye = model && (model->is_text("fisheye") || model->is_text("equidistant"));
     set_coefficients(*coefficients, numbers_of(*coefficients), is_fisheye, camera.intrinsics);
-    const auto width = find(file, own + "image_width"), height = find(file, own + "image_height");
+    const auto width = find_of(file, own + "image_width"),
+               height = find_of(file, own + "image_height");
     if (width && height) camera.image = Vector2d(width->number(), height->number());
     return camera;
 }
 
 CameraFile read_kalibr(const YamlValue& cam) {
-    if (const auto model = find(cam, "camera_model"); model && !model->is_text("pinhole")) {
+    if (const auto model = find_of(cam, "camera_model"); model && !model->is_text("pinhole")) {
         throw model->error("is " + quote(model->text()) + "; must be pinhole");
     }
     CameraFile camera;
@@ -94,7 +86,7 @@ CameraFile read_kalibr(const YamlValue& cam) {
     const std::vector<double> f = numbers_of(intrinsics);
     if (f.size() != 4) throw intrinsics.error("must have 4 numbers: fx, fy, cx, cy");
     camera.intrinsics = {f[0], f[1], f[2], f[3], Distortion::None, {}};
-    const auto model = find(cam, "distortion_model");
+    const auto model = find_of(cam, "distortion_model");
     if (model && !model->is_text("none")) {
         const bool is_fisheye = model->is_text("equidistant");
         if (!is_fisheye && !model->is_text("radtan")) {
@@ -104,7 +96,7 @@ CameraFile read_kalibr(const YamlValue& cam) {
         const YamlValue value = require(cam, "distortion_coeffs");
         set_coefficients(value, numbers_of(value), is_fisheye, camera.intrinsics);
     }
-    if (const auto size = find(cam, "resolution")) {
+    if (const auto size = find_of(cam, "resolution")) {
         const std::vector<double> px = size->numbers(2);
         camera.image = Vector2d(px[0], px[1]);
     }
@@ -132,10 +124,10 @@ CameraFile read_camera_file(const std::string& path, const YamlValue& asked_by, 
     }
     const YamlValue file = parse_yaml(without_opencv_words(std::move(content)), path);
     // A file may hold one camera or several.
-    const auto kalibr = find(file, fmt::format("cam{}", camera));
-    const auto only = find(file, "cam0");
+    const auto kalibr = find_of(file, fmt::format("cam{}", camera));
+    const auto only = find_of(file, "cam0");
     const std::string own = camera == 0 ? "" : fmt::format("camera{}_", camera + 1);
-    const bool has_own = find(file, own + "matrix").has_value();
+    const bool has_own = find_of(file, own + "matrix").has_value();
     CameraFile found = kalibr ? read_kalibr(*kalibr)
                        : only ? read_kalibr(*only)
                               : read_opencv(file, has_own ? own : "");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "board_section.hpp"
 #include "camera_file.hpp"
 #include "campaign_sections.hpp"
 #include "io/format/text.hpp"
@@ -14,7 +15,6 @@ namespace posewise::detail {
 namespace {
 
 constexpr double px_per_kpx = 1e3;
-constexpr std::size_t most_corners = 1000;
 
 /// A place where the file states none: forwards of the flange, on none of its axes.
 Isometry3d generic_place() {
@@ -112,65 +112,6 @@ void read_intrinsics(const YamlValue& value, Index number, SingleCamera& setup) 
         "is of an image of {:g} by {:g} px, image_px is {:g} by {:g}; must be of the same image, "
         "neither scaled nor turned",
         camera.image->x(), camera.image->y(), setup.image->x(), setup.image->y()));
-}
-
-Index read_count(const YamlValue& value) {
-    const std::uint64_t count = value.natural_number();
-    if (count >= 2 && count <= most_corners) return static_cast<Index>(count);
-    throw value.error(fmt::format("is {}; must be from 2 to {}", count, most_corners));
-}
-
-std::vector<Vector3d> chessboard(const YamlMap& board, const YamlValue& value) {
-    const Index columns = read_count(board.require("columns"));
-    const Index rows = read_count(board.require("rows"));
-    if (static_cast<std::size_t>(columns * rows) > most_corners) {
-        throw value.error(
-            fmt::format("has {} corners; must have at most {}", columns * rows, most_corners));
-    }
-    const double square = read_positive(board.require_measure("square"), false, 10);
-    std::vector<Vector3d> corners;
-    for (Index k = 0; k < rows * columns; ++k) {
-        corners.emplace_back(square * static_cast<double>(k % columns),
-                             square * static_cast<double>(k / columns), 0);
-    }
-    return corners;
-}
-
-std::vector<Vector3d> read_points(const YamlMeasure& points) {
-    const std::vector<YamlValue> items = points.value.list();
-    if (items.size() < 4 || items.size() > most_corners) {
-        throw points.value.error(
-            fmt::format("lists {} points; must be from 4 to {}", items.size(), most_corners));
-    }
-    std::vector<Vector3d> corners;
-    for (const YamlValue& item : items) {
-        corners.push_back(YamlMeasure{item, points.unit}.vector_to_si());
-        for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
-            if ((corners[k] - corners.back()).norm() > 1e-6) continue;
-            throw item.error(
-                fmt::format("is at the place of point {}; must be at one of its own", k + 1));
-        }
-    }
-    return corners;
-}
-
-void read_board(const YamlValue& value, CameraSetup& setup) {
-    const YamlMap board(value, keys::camera, "board");
-    const auto points = board.find_measure("points");
-    if (points.has_value() == board.find("columns").has_value()) {
-        throw value.error("must have either columns, rows and square_mm, or points_mm");
-    }
-    setup.corners = points ? read_points(*points) : chessboard(board, value);
-    if (!points) setup.columns = read_count(board.require("columns"));
-    if (const auto sigma = board.find_measure("sigma")) {
-        setup.corner_sigma = read_positive(*sigma, false, 0.1);
-    }
-    const auto first = board.find("first_point");
-    if (!first) return;
-    setup.first_corner = static_cast<Index>(first->natural_number());
-    if (setup.first_corner > 1) {
-        throw first->error(fmt::format("is {}; must be 0 or 1", setup.first_corner));
-    }
 }
 
 void read_view(const YamlValue& value, CameraSetup& setup) {

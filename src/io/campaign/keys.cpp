@@ -211,7 +211,7 @@ const YamlKeys sensor{
          "any place", "`[1280, 960]`"},
         {"intrinsics", "camera", "focal lengths, principal point and distortion", "required",
          "`{file: camera.yaml}`"},
-        {"board", "camera", "where its corners are", "required",
+        {"board", "camera", "what it shows and where its corners are", "required",
          "`{columns: 9, rows: 6, square_mm: 25}`"},
         {"place", "camera",
          "where the camera (on the flange) or the board (of a fixed camera) is in the flange frame",
@@ -266,19 +266,6 @@ const YamlKeys camera{
          "required", "`fisheye`"},
         {"coefficients", "distortion", "4, 5 or 8 of brown_conrady, 4 of fisheye",
          "required but for none", "`[0.01, 0, 0, 0]`"},
-        {"columns", "board",
-         "of a chessboard: inner corners in a row, not squares; they count row "
-         "by row, x along the rows and y downwards, z into the board",
-         "this or `points_mm`", "`9`"},
-        {"rows", "board", "rows of inner corners", "beside `columns`", "`6`"},
-        {"square_mm", "board", "side of a square", "beside `columns`", "`25`"},
-        {"points_mm", "board", "places of its corners or markers, not necessarily in a plane", "",
-         "`[[0, 0, 0], [50, 0, 0], [50, 50, 0], [0, 50, 0]]`"},
-        {"sigma_mm", "board",
-         "standard deviation of its corners' or markers' places, each coordinate about the stated "
-         "one: their errors are found with the rest",
-         "exact", "`0.3`"},
-        {"first_point", "board", "the first one's number in the measurements: 0 or 1", "1", "`0`"},
         {"intrinsics", "other_cameras", "as of the first camera", "required",
          "`{file: left.yaml}`"},
         {"image_px", "other_cameras", "as of the first camera", "any place", "`[1280, 960]`"},
@@ -292,6 +279,45 @@ const YamlKeys camera{
         {"least_corners", "view", "a pose must show", "4", "`20`"},
         {"front", "view", "the side of a plane board that bears the pattern: `-z` or `+z`", "`-z`",
          "`+z`"},
+    }};
+
+const YamlKeys board{
+    "board",
+    {
+        {"kind", "chessboard, charuco, aprilgrid and points",
+         "which of these: a chessboard, OpenCV's ChArUco board, Kalibr's grid of AprilTags "
+         "(36h11), "
+         "or points that stand alone",
+         "`points` where `points_mm` is stated, else `chessboard`", "`charuco`"},
+        {"columns", "chessboard, charuco and aprilgrid",
+         "of a chessboard inner corners in a row, not squares; of a ChArUco board squares; of an "
+         "AprilGrid tags",
+         "required", "`9`"},
+        {"rows", "chessboard, charuco and aprilgrid", "as many rows of these", "required", "`6`"},
+        {"square_mm", "chessboard and charuco", "side of a square", "required", "`25`"},
+        {"marker_mm", "charuco", "side of a marker, with its black border", "required", "`18`"},
+        {"dictionary", "charuco", "of the markers, as OpenCV names it", "`DICT_4X4_50`",
+         "`DICT_5X5_100`"},
+        {"legacy", "charuco",
+         "whether its first square is white, as OpenCV before 4.6 made boards with an even number "
+         "of rows",
+         "`false`", "`true`"},
+        {"tag_mm", "aprilgrid", "side of a tag, with its black border", "required", "`88`"},
+        {"spacing", "aprilgrid", "gap between two tags, divided by a tag's side", "required",
+         "`0.3`"},
+        {"points_mm", "points", "places of its corners or markers, not necessarily in a plane",
+         "required", "`[[0, 0, 0], [50, 0, 0], [50, 50, 0], [0, 50, 0]]`"},
+        {"file", "file, instead of these",
+         "a target file of Kalibr (`target_type: aprilgrid` or `checkerboard`), or a YAML file "
+         "with "
+         "these keys under `board`; relative to the campaign file",
+         "none", "`board.yaml`"},
+        {"sigma_mm", "",
+         "standard deviation of its corners' or markers' places, each coordinate about the stated "
+         "one: their errors are found with the rest",
+         "exact", "`0.3`"},
+        {"first_point", "", "the first corner's number in the measurements: 0 or 1",
+         "1; of charuco and aprilgrid 0", "`0`"},
     }};
 
 const YamlKeys noise{"noise",
@@ -499,9 +525,9 @@ const YamlKeys record{
 
 const std::vector<const YamlKeys*>& all() {
     static const std::vector<const YamlKeys*> tables{
-        &file,      &planning, &robot, &joint,  &dh,     &row,          &terms, &weight,
-        &sensor,    &camera,   &noise, &places, &spread, &measurements, &mat,   &cell,
-        &joint_sum, &keep_out, &solid, &link,   &sight,  &controller,   &record};
+        &file,   &planning,  &robot,    &joint, &dh,     &row,    &terms,        &weight,
+        &sensor, &camera,    &board,    &noise, &places, &spread, &measurements, &mat,
+        &cell,   &joint_sum, &keep_out, &solid, &link,   &sight,  &controller,   &record};
     return tables;
 }
 

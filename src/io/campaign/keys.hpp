@@ -8,9 +8,9 @@
 /// the manual, designs/README.md.
 namespace posewise::detail::keys {
 
-extern const YamlKeys file, planning, robot, joint, dh, row, terms, weight, sensor, camera, noise,
-    places, spread, measurements, mat, cell, joint_sum, keep_out, solid, link, sight, controller,
-    record;
+extern const YamlKeys file, planning, robot, joint, dh, row, terms, weight, sensor, camera, board,
+    noise, places, spread, measurements, mat, cell, joint_sum, keep_out, solid, link, sight,
+    controller, record;
 
 const std::vector<const YamlKeys*>& all();
 

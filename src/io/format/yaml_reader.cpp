@@ -283,6 +283,19 @@ InputError YamlMap::missing(const std::vector<std::string>& alternatives) const 
     return value_.error("has no key " + list_words(alternatives) + "; it must be stated");
 }
 
+std::optional<YamlValue> find_of(const YamlValue& map, std::string_view key) {
+    if (!map.is_map()) return std::nullopt;
+    for (const YamlEntry& entry : map.entries()) {
+        if (entry.key == key) return entry.value;
+    }
+    return std::nullopt;
+}
+
+YamlValue require_of(const YamlValue& map, std::string_view key, std::string_view why) {
+    if (auto value = find_of(map, key)) return *value;
+    throw map.error(fmt::format("has no key '{}', {}", key, why));
+}
+
 YamlValue parse_yaml(const std::string& content, const std::string& path) {
     check_utf8(content, path);
     if (content.find('\r') < content.size() - 1 && content.find('\n') == std::string::npos) {

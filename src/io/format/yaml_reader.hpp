@@ -108,6 +108,11 @@ class YamlMap {
     std::vector<std::string> keys_;  // units spelled out
 };
 
+/// The value of a key in a file of another program, whose other keys are its own.
+std::optional<YamlValue> find_of(const YamlValue& map, std::string_view key);
+/// The same of a key that must be there; `why` for the message: "which a camera needs".
+YamlValue require_of(const YamlValue& map, std::string_view key, std::string_view why);
+
 /// The one document of a YAML text; `path` is where it is from, for messages. Throws InputError
 /// with path:line:column.
 YamlValue parse_yaml(const std::string& content, const std::string& path);

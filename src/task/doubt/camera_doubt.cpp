@@ -52,7 +52,9 @@ void find_board_factor(const Campaign& campaign, const CameraSensor& camera,
     doubt.misfit = misfit;
     doubt.scaled_misfit = scaled_misfit;
     doubt.board_factor = factor;
-    if (setup.columns > 0) doubt.square = (setup.corners[1] - setup.corners[0]).norm();
+    const bool has_squares = setup.pattern.kind == BoardPattern::Kind::Chessboard ||
+                             setup.pattern.kind == BoardPattern::Kind::Charuco;
+    if (has_squares) doubt.square = (setup.corners[1] - setup.corners[0]).norm();
 }
 
 /// The middle of a camera's image or, if its size is not stated, of what it sees; and its extents,
