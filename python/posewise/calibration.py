@@ -198,8 +198,8 @@ def _values(document: dict[str, Any]) -> dict[str, tuple[float, str]]:
             for axis, number in zip("xyz", one["position_m"]):
                 values[f"{name}.{axis}"] = (number, "m")
     for key, number in document.get("sensor", {}).items():
-        name, unit = key.rsplit("_", 1)
-        values[name] = (number, unit)
+        name, _, unit = key.rpartition("_")
+        values[name or key] = (number, unit if name else "")  # numbers of a lens have none
     return values
 
 
