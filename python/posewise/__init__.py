@@ -9,9 +9,11 @@
 
 from . import _posewise
 from ._calls import Doubt, InputError, Interrupted
+from .boards import draw_board
 from .calibration import Estimate, calibrate
 from .campaign import Campaign, Sensor
 from .choice import Choice, Weights, design, indices, relax, select
+from .detection import detect
 from .planning import Plan, plan
 from .studies import Study, study
 
@@ -30,6 +32,8 @@ __all__ = [
     "Weights",
     "calibrate",
     "design",
+    "detect",
+    "draw_board",
     "indices",
     "plan",
     "relax",

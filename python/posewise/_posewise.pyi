@@ -39,6 +39,7 @@ class Campaign:
     parameter_names: list[str]
     parameter_is_angle: list[bool]
     parameter_sizes: Array
+    board: dict[str, Any] | None
     def __init__(self, content: str, path: str) -> None: ...
     def with_sensor(
         self,

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "posewise/io/documents.hpp"
 #include "posewise/io/result_files.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/report/reports.hpp"
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"
@@ -70,6 +72,24 @@ py::array_t<double> flange(const io::CampaignFile& campaign, const RowMatrixXd& 
     return to_array(std::move(frames), {q.rows(), 4, 4});
 }
 
+/// What the board that a camera sees shows, by the names of BoardPattern and CameraSetup; None of
+/// other sensors.
+py::object board(const io::CampaignFile& campaign) {
+    const auto* const camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
+    if (camera == nullptr) return py::none();
+    constexpr std::array kinds{"points", "chessboard", "charuco", "aprilgrid"};
+    const CameraSetup& setup = camera->setup();
+    const BoardPattern& pattern = setup.pattern;
+    RowMatrixXd corners(std::ssize(setup.corners), 3);
+    for (Index k = 0; const Vector3d& corner : setup.corners) corners.row(k++) = corner;
+    return py::dict(py::arg("kind") = kinds[static_cast<std::size_t>(pattern.kind)],
+                    py::arg("columns") = pattern.columns, py::arg("rows") = pattern.rows,
+                    py::arg("marker") = pattern.marker, py::arg("dictionary") = pattern.dictionary,
+                    py::arg("is_legacy") = pattern.is_legacy, py::arg("corners") = corners,
+                    py::arg("first_point") = setup.first_corner,
+                    py::arg("cameras") = camera->camera_count());
+}
+
 Inspection inspect_campaign(const io::CampaignFile& campaign) {
     return inspect(campaign, campaign.declared_robot,
                    campaign.error_model == io::ErrorModel::Stated);
@@ -89,6 +109,7 @@ void define_campaign(py::module_& module) {
         .def_property_readonly(
             "parameter_is_angle",
             [](const io::CampaignFile& file) { return parameter_is_angle(file); })
+        .def_property_readonly("board", &board)
         .def_property_readonly("parameter_sizes",
                                [](const io::CampaignFile& file) { return parameter_scale(file); })
         .def("with_sensor",
