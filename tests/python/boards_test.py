@@ -168,6 +168,21 @@ def test_boards_of_old_opencv_are_told_apart(cv2, tmp_path):
     assert np.mean(np.abs(own - drawn) > 128) < 0.02
 
 
+def test_charuco_corners_have_the_ids_of_opencv(cv2, tmp_path):
+    if not hasattr(cv2.aruco, "interpolateCornersCharuco"):
+        pytest.skip("of OpenCV before 4.7")
+    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
+    board = cv2.aruco.CharucoBoard_create(5, 7, 0.03, 0.022, dictionary)
+    drawn = cv2.GaussianBlur(board.draw((500, 700), None, 40, 1), (0, 0), 1)
+    corners, ids, _ = cv2.aruco.detectMarkers(drawn, dictionary)
+    _, pixels, numbers = cv2.aruco.interpolateCornersCharuco(corners, ids, drawn, board)
+    found = pw.detect([drawn], charuco)
+    assert found["point"].tolist() == numbers.ravel().tolist() == list(range(24))
+    assert np.abs(found[["u_px", "v_px"]].to_numpy() - pixels[:, 0]).max() < 0.6  # it is half a pixel off
+    places = pw.boards.Board.of(charuco).corners
+    assert np.allclose(places, np.array(board.chessboardCorners)[:, :2], atol=1e-7)
+
+
 def test_tags_are_those_that_kalibr_prints(cv2, tmp_path):
     printed = Printed(aprilgrid, tmp_path)
     # Tag 0 at the lower left. Code 0 of 36h11, the first bit at the upper left; 1 is white.
