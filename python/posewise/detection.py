@@ -155,12 +155,16 @@ def _refined(
 
 
 def _chessboard(cv2: Any, grey: npt.NDArray[np.uint8], board: Board) -> Found:
-    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_ACCURACY
-    size = (board.columns, board.rows)
-    is_found, pixels = cv2.findChessboardCornersSB(grey, size, flags=flags)
+    # A large image takes minutes; where the corners are in it is found afterwards.
+    shrink = min(1.0, float(np.sqrt(2e6 / grey.size)))
+    small = cv2.resize(grey, None, fx=shrink, fy=shrink, interpolation=cv2.INTER_AREA)
+    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE
+    is_found, pixels = cv2.findChessboardCornersSB(small, (board.columns, board.rows), flags=flags)
     if not is_found:
         return _nothing
-    grid = _upright(grey, np.asarray(pixels, float).reshape(board.rows, board.columns, 2))
+    scale = np.array(grey.shape[::-1]) / small.shape[::-1]
+    seen = (np.asarray(pixels, float) + 0.5) * scale - 0.5  # 0 is the middle of the first pixel
+    grid = _upright(grey, seen.reshape(board.rows, board.columns, 2))
     steps = [np.linalg.norm(np.diff(grid, axis=axis), axis=2).min() for axis in (0, 1)]
     points = np.arange(len(board.corners))
     return _refined(cv2, grey, points, grid.reshape(-1, 2), 0.4 * float(min(steps)))

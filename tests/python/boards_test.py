@@ -129,6 +129,15 @@ def test_corners_are_where_they_are(cv2, tmp_path, board, first, distance, turne
     check(printed, found, H, first, len(printed.corners))
 
 
+def test_a_large_image_is_of_use_as_a_whole(cv2, tmp_path):
+    printed = Printed(chessboard, tmp_path)
+    H = view(printed, 20, 10, 30, 430)
+    large = cv2.resize(printed.seen(cv2, H), (3 * width, 3 * height), interpolation=cv2.INTER_CUBIC)
+    found = pw.detect([large], chessboard)
+    found[["u_px", "v_px"]] = (found[["u_px", "v_px"]] + 0.5) / 3 - 0.5
+    check(printed, found, H, 1, 40)
+
+
 def test_a_hidden_part_leaves_the_other_corners(cv2, tmp_path):
     printed = Printed(charuco, tmp_path)
     H = view(printed, 15, 10, 100)
