@@ -21,6 +21,7 @@
 #include "posewise/io/program_targets.hpp"
 #include "posewise/report/reports.hpp"
 #include "posewise/task/cartesian_targets.hpp"
+#include "posewise/task/sent_plan.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -289,7 +290,9 @@ void write_corrected(const CorrectArguments& arguments, const io::CampaignFile& 
     }
     std::vector<VectorXd> values;
     for (std::size_t k = 0; k < program->program.targets.size(); ++k) {
-        values.push_back(file.controller.to_controller(corrected.corrections[k].joints));
+        values.push_back(file.controller.to_controller(
+            rounded_within_limits(corrected.corrections[k].joints, file, file.controller,
+                                  program->program.targets[k].steps)));
     }
     const auto places = corrected_places(arguments, file, *program, corrected, frames);
     compute_from(arguments.poses, [&] {

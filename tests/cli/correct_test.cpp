@@ -165,6 +165,19 @@ TEST_F(Correct, ReplacesTheJointTargetsOfAProgram) {
                        "far.script: configuration '1:8' is beyond the joint limits: q2 is ");
 }
 
+TEST_F(Correct, RoundsInwardsAtALimit) {
+    // q2 ends at 60 deg, which is nearer to 1.047198 than to 1.047197 rad.
+    write_text("limits.script",
+               "movej([0.1, 1.047197, 0.3, 0.4, 0.5, 0.6])\n"
+               "movej([0.1, -1.047197, 0.3, 0.4, 0.5, 0.6])\n");
+    const std::string text = run_well(correct_ + "limits.script --for ur -o corrected.script");
+    EXPECT_NE(text.find("q2 at its limit"), std::string::npos) << text;
+    const std::string corrected = text_of("corrected.script");
+    EXPECT_NE(corrected.find("1.047197, "), std::string::npos) << corrected;
+    EXPECT_EQ(corrected.find("1.047198, "), std::string::npos) << corrected;
+    run_well("correct " + fanuc_design + " e.json --poses corrected.script --for ur");
+}
+
 TEST_F(Correct, TakesPlacesOfATool) {
     write_text("p.csv",
                "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n"

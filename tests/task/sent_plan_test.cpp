@@ -107,6 +107,43 @@ TEST(SentPlan, RoundsInwardsAtALimit) {
     EXPECT_NEAR(sent.poses[0].configuration[0] / degree, 12.345, 1e-9);
 }
 
+TEST(RoundedWithinLimits, IsNextToTheValuesAndNeverFurtherBeyondALimit) {
+    Campaign campaign = in_cell();
+    VectorXd coefficients = VectorXd::Zero(6);
+    coefficients << 0, -1, 1, 0, 0, 0;
+    campaign.cell.joint_sums = {{"q3 - q2", coefficients, {-1.234567, 1.5}}};
+    const ControllerJoints joints = coupled(campaign.robot);
+    const auto beyond = [&](const VectorXd& q) {
+        double most = 0;
+        for (Index j = 0; j < 6; ++j) {
+            const Joint& joint = campaign.robot.joint(j);
+            most = std::max({most, joint.lower - q[j], q[j] - joint.upper});
+        }
+        return std::max({most, -1.234567 - (q[2] - q[1]), q[2] - q[1] - 1.5});
+    };
+    Index not_nearest = 0;
+    for (Index i = 0; i < testing::sweep_count(); ++i) {
+        RandomStream stream(9, static_cast<std::uint64_t>(i));
+        VectorXd q(6);
+        for (Index j = 0; j < 6; ++j) {  // a third each at its limits and between
+            const Joint& joint = campaign.robot.joint(j);
+            const Index where = stream.index(3);
+            q[j] = where == 0   ? joint.lower
+                   : where == 1 ? joint.upper
+                                : stream.uniform(joint.lower, joint.upper);
+        }
+        if (i % 4 == 0) q[2] = q[1] - 1.234567;  // of the sum, too, joint 3 perhaps beyond its own
+        const VectorXd rounded = rounded_within_limits(q, campaign, joints, thousandth);
+        EXPECT_LT(off_grid(joints, rounded, thousandth), 1e-6);
+        EXPECT_LE(beyond(rounded), beyond(q) + 1e-12);
+        const VectorXd moved =
+            (joints.to_controller(rounded) - joints.to_controller(q)).cwiseQuotient(thousandth);
+        EXPECT_LT(moved.cwiseAbs().maxCoeff(), 1 + 1e-6);
+        if (moved.cwiseAbs().maxCoeff() > 0.5 + 1e-6) ++not_nearest;
+    }
+    EXPECT_GT(not_nearest, 0);
+}
+
 TEST(SentPlan, IsRefusedWhereNoDigitsFit) {
     Campaign campaign = cell_campaign();
     std::vector<Joint> limits = campaign.robot.joints();

@@ -21,6 +21,13 @@ namespace posewise {
 Plan sent_plan(const Plan& plan, const Campaign& campaign, const ControllerJoints& controller,
                const VectorXd& steps);
 
+/// A configuration (rad or m) at whole multiples of `steps` (of each controller joint): the nearest
+/// that is not beyond the joint limits and the campaign's joint sums, or no further than
+/// `configuration` itself, among the two of each joint that are next to it; if there is none, the
+/// nearest. Throws InputError for a step that is not positive.
+VectorXd rounded_within_limits(const VectorXd& configuration, const Campaign& campaign,
+                               const ControllerJoints& controller, const VectorXd& steps);
+
 /// What rounding costs.
 struct RoundingLoss {
     Criterion criterion = Criterion::D;

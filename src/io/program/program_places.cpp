@@ -185,10 +185,10 @@ std::vector<std::pair<io::TextSpan, std::string>> place_texts(const io::TargetPr
         const bool is_quaternion = format == ProgramFormat::Abb && k >= 3;
         const io::TextSpan span = target.values[k];
         texts.emplace_back(
-            span,
-            number_text(std::string_view(program.content).substr(span.begin, span.end - span.begin),
-                        is_quaternion ? quaternion_decimals : target_rules_of(format)->decimals,
-                        numbers[k]));
+            span, number_text(
+                      std::string_view(program.content).substr(span.begin, span.end - span.begin),
+                      is_quaternion ? quaternion_decimals : target_kind_of(format)->rules.decimals,
+                      numbers[k]));
     }
     const std::vector<long> states = states_of(target, format, corrected.joints);
     for (std::size_t k = 0; k < states.size(); ++k) {

@@ -30,7 +30,7 @@ class TargetReader {
                  TargetKinds kinds)
         : path_(path),
           format_(format),
-          rules_(*detail::target_rules_of(format)),
+          rules_(detail::target_kind_of(format)->rules),
           joints_(joints),
           kinds_(kinds) {
         constexpr std::size_t most_bytes = 1 << 26;
@@ -83,14 +83,17 @@ class TargetReader {
     void leave(std::size_t at) { program_.others.push_back(place(at).line); }
 
     void add(const std::vector<TextSpan>& spans, const std::string& id = "") {
-        JointTarget target{id, VectorXd(joints_.count()), spans};
+        JointTarget target{id, VectorXd(joints_.count()), spans, VectorXd(joints_.count())};
         const FileLocation where = place(spans.front().begin);
         if (id.empty()) target.id = fmt::format("{}:{}", where.line, where.column);
         for (Index i = 0; i < joints_.count(); ++i) {
             const auto [begin, end] = spans[static_cast<std::size_t>(i)];
             const std::string_view text = std::string_view(content()).substr(begin, end - begin);
             const double value = detail::parse_number(text).value;
-            target.joints[i] = detail::unit_of(rules_, joints_.motion(i)).to_si(value);
+            const detail::Unit& unit = detail::unit_of(rules_, joints_.motion(i));
+            target.joints[i] = unit.to_si(value);
+            target.steps[i] =
+                unit.to_si(std::pow(10.0, -detail::decimals_of(text, rules_.decimals)));
             if (detail::is_plausible(target.joints[i], detail::quantity_of(joints_.motion(i)))) {
                 continue;
             }
@@ -444,7 +447,8 @@ std::vector<std::string> target_format_names() { return {"fanuc", "kuka", "abb",
 
 TargetProgram read_program_targets(const std::string& path, ProgramFormat format,
                                    const ControllerJoints& joints, TargetKinds kinds) {
-    if (detail::target_rules_of(format) == nullptr) {
+    const detail::ProgramKind* const kind = detail::target_kind_of(format);
+    if (kind == nullptr) {
         throw InputError(fmt::format("programs for {} are not corrected; must be {}",
                                      program_format_name(format),
                                      detail::list_words(target_format_names())));
@@ -464,7 +468,7 @@ std::string replace_targets(const TargetProgram& program, ProgramFormat format,
                             const ControllerJoints& joints, const std::vector<VectorXd>& values,
                             const std::vector<CorrectedPlace>& places) {
     const std::string_view content = program.content;
-    const ProgramRules& rules = *detail::target_rules_of(format);
+    const ProgramRules& rules = detail::target_kind_of(format)->rules;
     std::vector<std::pair<TextSpan, std::string>> texts;
     for (std::size_t k = 0; k < program.targets.size(); ++k) {
         for (Index i = 0; i < joints.count(); ++i) {

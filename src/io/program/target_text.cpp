@@ -19,16 +19,16 @@ bool is_blank(char letter) { return std::isspace(static_cast<unsigned char>(lett
 
 }  // namespace
 
-const ProgramRules* target_rules_of(io::ProgramFormat format) {
+const ProgramKind* target_kind_of(io::ProgramFormat format) {
     switch (format) {
         case io::ProgramFormat::Fanuc:
-            return &fanuc_program().rules;
+            return &fanuc_program();
         case io::ProgramFormat::Kuka:
-            return &kuka_program().rules;
+            return &kuka_program();
         case io::ProgramFormat::Abb:
-            return &abb_program().rules;
+            return &abb_program();
         case io::ProgramFormat::Ur:
-            return &ur_program().rules;
+            return &ur_program();
         default:
             return nullptr;
     }
@@ -97,14 +97,16 @@ std::optional<std::vector<io::TextSpan>> Cursor::numbers(std::size_t count, char
     return spans;
 }
 
-std::string number_text(std::string_view text, int least, double number) {
+int decimals_of(std::string_view text, int least) {
     const std::size_t point = text.find('.');
     const bool is_plain = text.find_first_of("eE") == std::string_view::npos;
-    int decimals = least;
-    if (point != std::string_view::npos && is_plain) {
-        constexpr std::size_t most = 12;  // a double holds no more of a turn
-        decimals = std::max(least, static_cast<int>(std::min(most, text.size() - point - 1)));
-    }
+    if (point == std::string_view::npos || !is_plain) return least;
+    constexpr std::size_t most = 12;  // a double holds no more of a turn
+    return std::max(least, static_cast<int>(std::min(most, text.size() - point - 1)));
+}
+
+std::string number_text(std::string_view text, int least, double number) {
+    const int decimals = decimals_of(text, least);
     std::string replaced = fmt::format("{:.{}f}", number, decimals);
     const bool is_zero = replaced.find_first_not_of("-0.") == std::string::npos;
     if (is_zero && replaced[0] == '-') replaced.erase(0, 1);

@@ -39,10 +39,13 @@ class Cursor {
 };
 
 /// What corrections need to know of a format's programs; nullptr: they are not corrected.
-const ProgramRules* target_rules_of(io::ProgramFormat format);
+const ProgramKind* target_kind_of(io::ProgramFormat format);
 
-/// A number with at least as many decimals as both the text, which it replaces, and `least`; the
-/// text itself where it is the same number then.
+/// Decimals of what replaces the text: as many as it has, at least `least` and at most 12.
+int decimals_of(std::string_view text, int least);
+
+/// A number in decimals_of() the text, which it replaces; the text itself where it is the same
+/// number then.
 std::string number_text(std::string_view text, int least, double number);
 
 // ---- Places: positions that are stated by coordinates ----

@@ -270,6 +270,27 @@ Plan sent_plan(const Plan& plan, const Campaign& campaign, const ControllerJoint
     return sent;
 }
 
+VectorXd rounded_within_limits(const VectorXd& configuration, const Campaign& campaign,
+                               const ControllerJoints& controller, const VectorXd& steps) {
+    Cell cell;
+    cell.joint_sums = campaign.cell.joint_sums;
+    const Constraints limits(campaign, cell, false);
+    const auto clearance = [&](const VectorXd& q) {
+        double least = limits.sum_clearance(q);
+        for (Index j = 0; j < campaign.robot.joint_count(); ++j) {
+            const Joint& joint = campaign.robot.joint(j);
+            least = std::min({least, q[j] - joint.lower, joint.upper - q[j]});
+        }
+        return least;
+    };
+    constexpr double noise = 1e-13;  // of the ways to the controller's joints and back, rad or m
+    const double allowed = std::min(0.0, clearance(configuration)) - noise;
+    const Grid grid(controller, steps);
+    const auto rounded =
+        grid.nearest_of(configuration, [&](const VectorXd& q) { return clearance(q) >= allowed; });
+    return rounded.value_or(grid.nearest(configuration));
+}
+
 Plan with_revisits(const Plan& sent, const std::string& id, Index every) {
     const auto reference = std::ranges::find(sent.poses, id, &PlannedPose::id);
     if (reference == sent.poses.end()) {
