@@ -237,6 +237,59 @@ TEST(ProgramTargets, ThatAreNoNumbersAreNamed) {
     EXPECT_EQ(abb.others, std::vector<long>{3});
 }
 
+/// What program --read refuses as spoilt, in programs whose moves it would not take either.
+TEST(ProgramTargets, OfSpoiltStatementsAreRefused) {
+    const auto expect = [](ProgramFormat format, const std::string& text,
+                           const std::string& words) {
+        const std::string error = Written(format, text).error();
+        EXPECT_NE(error.find(words), std::string::npos) << text << error;
+    };
+    const std::string slip = "as a move has, but is none that is known";
+    const std::string ur = "movej([1, 2, 0, 0, 0, 0])\n";
+    expect(ProgramFormat::Ur, ur + "mvej([0, 1, 2, 0, 0, 0], a=1)\n", "cell.script:2:1: has '(['");
+    expect(ProgramFormat::Ur, ur + "Movel(p[0, 1, 2, 0, 0, 0])\n", "must be movel");
+    expect(ProgramFormat::Ur, ur + "movel([0, 1, 2, 0, 0, 0], a=1\n", "has no ) at its end");
+    expect(ProgramFormat::Ur, ur + "movej([0, 1, 2, 0, 0, 0, a=1)\n", "has no ] at its end");
+    expect(ProgramFormat::Ur, ur + "movel(p[0, 1, 2, 0, 0, 0], v=-1)\n",
+           "has 'v=-1'; must not be below 0");
+    EXPECT_EQ(Written(ProgramFormat::Ur,
+                      ur + "set_gravity([0, 0, 9.82])\n"
+                           "movec(p[0, 0, 1, 0, 0, 0], p[0, -1, 1, 0, 0, -1], a=1) # mvej([\n"
+                           "q = f([0, 1, 2, 0, 0, 0])\nmovej(g(q, -1), a=1)\n")
+                  .error(),
+              "no error");
+    const std::string axes = "{A1 1,A2 2,A3 3,A4 4,A5 5,A6 6";
+    const std::string kuka = "PTP " + axes + "}\nEND\n";
+    expect(ProgramFormat::Kuka, "PPT " + axes + "}\n" + kuka, slip);
+    expect(ProgramFormat::Kuka, "PTP " + axes + "\n" + kuka, "cell.src:1:1: has no } at its end");
+    expect(ProgramFormat::Kuka, "LIN {X 1,Y 2\n" + kuka, "has no } at its end");
+    EXPECT_EQ(Written(ProgramFormat::Kuka, "SPTP " + axes + "} C_PTP ; {A1\n" + kuka).error(),
+              "no error");
+    const std::string target = "[[1,2,3,4,5,6],[9E9,9E9,9E9,9E9,9E9,9E9]]";
+    const auto abb = [&](const std::string& text) {
+        return "MODULE m\nCONST jointtarget a:=" + target + ";\n" + text + "\nENDMODULE\n";
+    };
+    expect(ProgramFormat::Abb, abb("MovAbsJ " + target + ",v100,z1,tool0;"), slip);
+    expect(ProgramFormat::Abb, abb("MoveAbsJ " + target + ",v100,z1,tool0"), "has no ; at its end");
+    expect(ProgramFormat::Abb, abb("MoveAbsJ [[1,2,3,4,5,6],[9E9,9E9,9E9,9E9,9E9,9E9],v1,fine,t;"),
+           "has no ] at its end");
+    EXPECT_EQ(Written(ProgramFormat::Abb,
+                      abb("MoveAbsJ " + target + ",\nv100,z1,tool0;\nIF a=1 MoveAbsJ " + target +
+                          ",v100,z1,tool0;\nMoveL [[1,2,3],[1,0,0,0],[0,0,0,0],[9E9]],v1,z1,t;\n"
+                          "PDispSet [[1,2,3],[1,0,0,0]];"))
+                  .error(),
+              "no error");
+    const auto fanuc = [](const std::string& move) {
+        return "/PROG A\n/MN\n   1:  !see P[7] ;\n   2:" + move +
+               " ;\n/POS\nP[1]{\n   GP1:\n\tUF : 0, UT : 1,\n\tJ1= 0.000 deg,\tJ2= 0.000 deg,\tJ3= "
+               "0.000 deg,\n\tJ4= 0.000 deg,\tJ5= 0.000 deg,\tJ6= 0.000 deg\n};\n/END\n";
+    };
+    expect(ProgramFormat::Fanuc, fanuc("K P[1] 10% FINE"), "CELL.LS:4:6: has ' P['");
+    expect(ProgramFormat::Fanuc, fanuc("L P[x] 10% FINE"), "names no position");
+    EXPECT_EQ(Written(ProgramFormat::Fanuc, fanuc("C P[1]\n    :  P[2] 9mm/sec FINE")).error(),
+              "no error");
+}
+
 TEST(ProgramTargets, AreFoundOrRefusedInSpoiltFiles) {
     const TemporaryFolder folder;
     const CampaignFile campaign = cell_with(reversed_joints);

@@ -86,6 +86,21 @@ std::vector<TextLine> abb_statements(const TextLine& line) {
     return statements;
 }
 
+void check_abb(const TextLine& line) {
+    constexpr std::string_view moves = "MoveAbsJ MoveAbsJDO MoveAbsJAO MoveAbsJGO TriggAbsJ";
+    for (const TextLine& statement : abb_statements(line)) {
+        if (statement.begins_with("!")) continue;
+        check_target(abb_program().rules, statement, moves);
+        if (!is_word(first_word(statement.text), moves)) continue;
+        if (statement.text.ends_with(',')) continue;  // goes on in the next line
+        const auto end = statement.text.data() + statement.text.size() - line.text.data();
+        if (!line.text.substr(static_cast<std::size_t>(end)).starts_with(';')) {
+            throw statement.error("has no ; at its end; must have one");
+        }
+        check_brackets(statement);
+    }
+}
+
 /// Throws InputError unless the move to joints ends in an exact stop, and moves nothing else.
 void check_abb_move(const TextLine& line) {
     if (!line.has(",fine,") && !line.has(", fine,")) {
@@ -114,14 +129,11 @@ std::vector<io::ProgramStop> read_abb(const std::string& path, const ControllerJ
     const ProgramFile file(path, "ENDMODULE");
     StopCollector stops(abb_program().rules, joints);
     for (const TextLine& line : file.lines()) {
+        check_abb(line);
         for (const TextLine& one : abb_statements(line)) {
             if (one.begins_with("!")) {
                 stops.note(one.text.substr(1));
             } else if (one.begins_with("MoveAbsJ")) {
-                if (!line.text.substr(one.text.data() + one.text.size() - line.text.data())
-                         .starts_with(';')) {
-                    throw one.error("has no ; at its end; must have one");
-                }
                 const std::vector<double> numbers = read_numbers(one, abb_joints(one));
                 check_abb_move(one);
                 stops.move(one, numbers);
@@ -156,9 +168,11 @@ const ProgramKind& abb_program() {
                   .modifiers = "LOCAL TASK"},
          .waits = "WaitTime WaitDI WaitUntil Stop Break",
          .messages = "TPWrite",
-         .target = "[["},
+         .target = "[[",
+         .target_numbers = 6},
         &abb_files,
-        &read_abb};
+        &read_abb,
+        &check_abb};
     return kind;
 }
 

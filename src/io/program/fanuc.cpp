@@ -135,6 +135,20 @@ TextLine fanuc_statement(TextLine line) {
     return line;
 }
 
+void check_fanuc(const TextLine& line) {
+    const TextLine statement = fanuc_statement(line);
+    for (const char* const comment : {"!", "//", "--"}) {
+        if (statement.begins_with(comment)) return;
+    }
+    constexpr std::string_view moves = "J L C A S";
+    check_target(fanuc_program().rules, statement, moves);
+    const std::string_view word = first_word(statement.text);
+    const std::string_view rest = trim(statement.text.substr(word.size()));
+    if (is_word(word, moves) && rest.starts_with("P[")) {
+        read_fanuc_index(statement, rest.substr(2));
+    }
+}
+
 std::vector<FileContent> fanuc_files(const std::string& path, const io::RobotProgram& program) {
     FanucBody body;
     std::string positions;
@@ -190,6 +204,7 @@ std::vector<io::ProgramStop> read_fanuc(const std::string& path, const Controlle
     const auto positions = read_fanuc_positions(lines, end + 1);
     StopCollector stops(fanuc_program().rules, joints);
     for (std::size_t k = section("/MN"); k < end; ++k) {
+        check_fanuc(lines[k]);
         const TextLine line = fanuc_statement(lines[k]);
         if (line.begins_with("!")) {
             stops.note(line.text.substr(1));
@@ -224,7 +239,8 @@ const ProgramKind& fanuc_program() {
                                    .waits = "WAIT PAUSE CALL",
                                    .target = " P["},
                                   &fanuc_files,
-                                  &read_fanuc};
+                                  &read_fanuc,
+                                  &check_fanuc};
     return kind;
 }
 

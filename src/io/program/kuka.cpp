@@ -122,6 +122,13 @@ TextLine without_comment(TextLine line) {
     return line;
 }
 
+void check_kuka(const TextLine& line) {
+    constexpr std::string_view moves = "PTP PTP_REL SPTP SPTP_REL LIN LIN_REL SLIN CIRC SCIRC SPL";
+    const TextLine statement = without_comment(line);
+    check_target(kuka_program().rules, statement, moves);
+    if (is_word(first_word(statement.text), moves)) check_brackets(statement);
+}
+
 std::vector<io::ProgramStop> read_part(const std::string& path, const TextLine& call,
                                        const ControllerJoints& joints);
 
@@ -132,6 +139,7 @@ std::vector<io::ProgramStop> read_module(const std::string& path, const Controll
     const std::string part = stem_of(path) + "_";
     StopCollector stops(kuka_program().rules, joints);
     for (const TextLine& line : file.lines()) {
+        check_kuka(line);
         if (line.begins_with(";FOLD") || line.begins_with(";ENDFOLD")) continue;
         if (line.begins_with(";")) {
             stops.note(line.text.substr(1));
@@ -210,9 +218,11 @@ const ProgramKind& kuka_program() {
                   .leaves = "RETURN",
                   .modifiers = "GLOBAL"},
          .waits = "WAIT HALT",
-         .target = "{A1"},
+         .target = "{A1",
+         .target_numbers = 6},
         &kuka_files,
-        &read_kuka};
+        &read_kuka,
+        &check_kuka};
     return kind;
 }
 

@@ -42,7 +42,6 @@ class StopCollector {
 
     void check_move(const TextLine& line);
     void check_flow(const TextLine& statement);
-    void check_target(const TextLine& statement) const;
     void open(const TextLine& statement, bool is_routine);
     void close();
     void name_by_message(const TextLine& statement);

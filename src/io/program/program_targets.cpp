@@ -454,6 +454,8 @@ TargetProgram read_program_targets(const std::string& path, ProgramFormat format
                                      detail::list_words(target_format_names())));
     }
     joint_steps(format, joints);
+    const detail::ProgramFile file(path);
+    for (const detail::TextLine& line : file.lines()) kind->check(line);
     TargetReader reader(path, format, joints, kinds);
     if (format == ProgramFormat::Fanuc) reader.read_fanuc();
     if (format == ProgramFormat::Kuka) reader.read_kuka();

@@ -36,6 +36,22 @@ bool is_word(std::string_view text, std::string_view words) {
     return false;
 }
 
+bool is_word_letter(char letter) {
+    return letter == '_' || letter == '$' || std::isalnum(static_cast<unsigned char>(letter)) != 0;
+}
+
+std::string_view word_before(std::string_view text, std::size_t at) {
+    while (at > 0 && (text[at - 1] == ' ' || text[at - 1] == '\t')) --at;
+    std::size_t begin = at;
+    while (begin > 0 && is_word_letter(text[begin - 1])) --begin;
+    return text.substr(begin, at - begin);
+}
+
+std::string_view first_word(std::string_view text) {
+    return text.substr(
+        0, static_cast<std::size_t>(std::ranges::find_if_not(text, is_word_letter) - text.begin()));
+}
+
 const Unit& unit_of(const ProgramRules& rules, Motion motion) {
     const bool turns = motion == Motion::Rotation;
     return *find_unit(rules.is_in_radians ? (turns ? "rad" : "m") : (turns ? "deg" : "mm"));
@@ -132,6 +148,32 @@ ProgramFile::ProgramFile(const std::string& path, std::string_view end) : Progra
     const auto ends = [&](const TextLine& line) { return line.begins_with(end); };
     if (std::ranges::any_of(lines_, ends)) return;
     throw input_error_at({path}, fmt::format("has no {}; must be the whole program", end));
+}
+
+void check_brackets(const TextLine& statement) {
+    std::string open;
+    for (const char letter : statement.text) {
+        if (letter == '(' || letter == '[' || letter == '{') {
+            open += letter == '(' ? ')' : letter == '[' ? ']' : '}';
+        } else if (!open.empty() && letter == open.back()) {
+            open.pop_back();
+        }
+    }
+    if (open.empty()) return;
+    throw statement.error(fmt::format("has no {} at its end; must have one", open.back()));
+}
+
+void check_target(const ProgramRules& rules, const TextLine& statement, std::string_view moves) {
+    const std::string_view text = statement.text.substr(0, statement.text.find('"'));
+    const std::size_t found = rules.target.empty() ? text.npos : text.find(rules.target);
+    if (found == text.npos || text.find('=') < found) return;
+    const std::size_t end = std::min(text.find_first_of("]}", found), text.size());
+    const auto commas = std::ranges::count(text.substr(found, end - found), ',');
+    if (commas + 1 < rules.target_numbers) return;
+    if (is_word(word_before(text, found), moves) || is_word(first_word(text), moves)) return;
+    throw statement.error(
+        fmt::format("has {} as a move has, but is none that is known; must be put right or removed",
+                    quote(rules.target)));
 }
 
 std::vector<double> read_numbers(const TextLine& line, std::string_view text) {

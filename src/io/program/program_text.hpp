@@ -39,7 +39,10 @@ struct ProgramRules {
     std::string_view waits = "";     ///< begin statements at which the robot waits
     std::string_view messages = "";  ///< begin statements that show the pose's label
     std::string_view target = "";    ///< that moves have, and assignments
+    Index target_numbers = 0;        ///< that follow it at least
 };
+
+struct TextLine;
 
 /// A format, which stands in a file of its own: its rules, its writer and its reader, both of the
 /// path as the user states it.
@@ -47,6 +50,9 @@ struct ProgramKind {
     ProgramRules rules;
     std::vector<FileContent> (*write)(const std::string& path, const io::RobotProgram& program);
     std::vector<io::ProgramStop> (*read)(const std::string& path, const ControllerJoints& joints);
+    /// Throws InputError where a statement of the line is spoilt, in whatever program it is: a slip
+    /// in the word of a move, a move that does not end. `read` does so, too; nullptr: it alone.
+    void (*check)(const TextLine& line) = nullptr;
 };
 
 inline constexpr std::size_t longest_label = 16;
@@ -54,6 +60,12 @@ inline constexpr std::size_t longest_label = 16;
 std::string lower_case(std::string text);
 /// Whether it is one of the words, which blanks separate, whatever their case.
 bool is_word(std::string_view text, std::string_view words);
+/// Letters, digits, underscores and $.
+bool is_word_letter(char letter);
+/// The word that ends just before a place, blanks between them passed over; empty: none does.
+std::string_view word_before(std::string_view text, std::size_t at);
+/// The word that begins the text; empty: none does.
+std::string_view first_word(std::string_view text);
 /// Letters, digits and underscores, the first a letter, none of the words.
 std::string legal_name(std::string_view text, std::size_t longest, bool is_upper,
                        std::string_view words);
@@ -105,6 +117,13 @@ class ProgramFile {
     std::string content_;
     std::vector<TextLine> lines_;
 };
+
+/// Throws InputError where a bracket of the statement does not close.
+void check_brackets(const TextLine& statement);
+
+/// Throws InputError where a statement has a move's target, of joint values, but none of these
+/// words (separated by blanks) begins it or stands before the target: a slip in the word.
+void check_target(const ProgramRules& rules, const TextLine& statement, std::string_view moves);
 
 /// The finite numbers of `text`, separated by commas. Throws InputError at the line.
 std::vector<double> read_numbers(const TextLine& line, std::string_view text);

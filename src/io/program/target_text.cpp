@@ -11,10 +11,6 @@
 namespace posewise::detail {
 namespace {
 
-bool is_name_letter(char letter) {
-    return letter == '_' || letter == '$' || std::isalnum(static_cast<unsigned char>(letter)) != 0;
-}
-
 bool is_blank(char letter) { return std::isspace(static_cast<unsigned char>(letter)) != 0; }
 
 }  // namespace
@@ -51,13 +47,6 @@ std::string masked(const std::string& content, char comment) {
     return text;
 }
 
-std::string_view word_before(std::string_view text, std::size_t at) {
-    while (at > 0 && (text[at - 1] == ' ' || text[at - 1] == '\t')) --at;
-    std::size_t begin = at;
-    while (begin > 0 && is_name_letter(text[begin - 1])) --begin;
-    return text.substr(begin, at - begin);
-}
-
 void Cursor::skip_blanks() {
     while (!is_at_end() && is_blank(text_[at_])) ++at_;
 }
@@ -72,7 +61,7 @@ bool Cursor::take(char letter) {
 std::string_view Cursor::word() {
     skip_blanks();
     const std::size_t begin = at_;
-    while (!is_at_end() && is_name_letter(text_[at_])) ++at_;
+    while (!is_at_end() && is_word_letter(text_[at_])) ++at_;
     return text_.substr(begin, at_ - begin);
 }
 

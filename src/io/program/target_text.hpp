@@ -15,9 +15,6 @@ namespace posewise::detail {
 /// The program with blanks in the place of comments and strings.
 std::string masked(const std::string& content, char comment);
 
-/// The word that ends just before a place, blanks between them passed over.
-std::string_view word_before(std::string_view text, std::size_t at);
-
 /// Reads on from a place in a text.
 class Cursor {
   public:

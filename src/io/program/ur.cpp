@@ -35,39 +35,72 @@ std::string ur_stop(const io::RobotProgram& program, const io::ProgramStop& stop
     return text;
 }
 
+/// What stands before a comment.
+TextLine without_comment(TextLine line) {
+    line.text = trim(line.text.substr(0, line.text.find('#')));
+    return line;
+}
+
+/// An argument of a call: "r=0.05", or the third one.
+struct UrArgument {
+    std::string_view text;
+    std::string_view name;  ///< empty: it has none
+    ParsedNumber value;
+};
+
+/// What stands behind the target of a move: "movej([...], a=0.5, r=0)" has two.
+std::vector<UrArgument> ur_arguments(const TextLine& move) {
+    const std::size_t begin = std::min(move.text.rfind(']'), move.text.size() - 1) + 1;
+    const std::size_t end = std::min(move.text.find(')', begin), move.text.size());
+    std::string_view rest = move.text.substr(begin, end - begin);
+    std::vector<UrArgument> arguments;
+    while (!rest.empty()) {
+        const std::size_t comma = std::min(rest.find(','), rest.size());
+        UrArgument& one = arguments.emplace_back();
+        one.text = trim(rest.substr(0, comma));
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
+        const std::size_t equals = one.text.find('=');
+        if (equals != std::string_view::npos) one.name = trim(one.text.substr(0, equals));
+        one.value = parse_number(trim(one.text.substr(one.name.empty() ? 0 : equals + 1)));
+    }
+    return arguments;
+}
+
+void check_ur(const TextLine& line) {
+    constexpr std::string_view moves = "movej movel movep movec servoj speedj speedl";
+    const TextLine statement = without_comment(line);
+    check_target(ur_program().rules, statement, moves);
+    const std::string_view word = first_word(statement.text);
+    if (!is_word(word, moves)) return;
+    if (lower_case(std::string(word)) != word) {
+        throw line.error(
+            fmt::format("is no word of URScript, which tells capitals apart; must be {}",
+                        lower_case(std::string(word))));
+    }
+    check_brackets(statement);
+    for (const UrArgument& argument : ur_arguments(statement)) {
+        if (!argument.value.ok() || argument.value.value >= 0) continue;
+        throw line.error(fmt::format("has {}; must not be below 0", quote(argument.text)));
+    }
+}
+
 /// What is between the brackets of "movej([...], ...".
 std::string_view ur_joints(const TextLine& line) {
     const std::size_t open = line.text.find('[');
     const std::size_t close = line.text.find(']', std::min(open, line.text.size()));
-    if (!line.text.starts_with("movej") && line.begins_with("movej")) {
-        throw line.error("is no word of URScript, which tells capitals apart; must be movej");
-    }
     if (!line.text.starts_with("movej([") || close == std::string_view::npos) {
         throw line.error("is no joint move to numbers; must be like movej([0, -1.57, ...], ...)");
     }
     return line.text.substr(open + 1, close - open - 1);
 }
 
-/// Throws InputError unless the blend radius is zero: "r=...", or the fifth argument; for numbers
-/// below 0, and for a call that does not end.
+/// Throws InputError unless the blend radius is zero: "r=...", or the fifth argument.
 void check_ur_stop(const TextLine& line) {
-    const std::size_t begin = line.text.find(']') + 1;
-    const std::size_t end = line.text.find(')', begin);
-    if (end == std::string_view::npos) throw line.error("has no ) at its end; must have one");
-    std::string_view rest = line.text.substr(begin, end - begin);
-    for (int position = 1; !rest.empty(); ++position) {
-        const std::size_t comma = std::min(rest.find(','), rest.size());
-        const std::string_view argument = trim(rest.substr(0, comma));
-        rest.remove_prefix(std::min(comma + 1, rest.size()));
-        const std::size_t equals = argument.find('=');
-        const bool has_name = equals != std::string_view::npos;
-        const std::string_view name = has_name ? trim(argument.substr(0, equals)) : "";
-        const ParsedNumber value = parse_number(trim(argument.substr(has_name ? equals + 1 : 0)));
-        if (value.ok() && value.value < 0) {
-            throw line.error(fmt::format("has {}; must not be below 0", quote(argument)));
-        }
-        if (has_name ? name != "r" : position != 5) continue;
-        if (value.ok() && value.value == 0) continue;
+    const std::vector<UrArgument> arguments = ur_arguments(line);
+    for (std::size_t k = 0; k < arguments.size(); ++k) {
+        const auto& [text, name, value] = arguments[k];
+        const bool is_radius = name.empty() ? k == 4 : name == "r";
+        if (!is_radius || (value.ok() && value.value == 0)) continue;
         throw line.error("does not stop at its position; must have r=0");
     }
 }
@@ -88,16 +121,11 @@ void check_ur_statement(const TextLine& line) {
     }
 }
 
-/// What stands before a comment.
-TextLine without_comment(TextLine line) {
-    line.text = trim(line.text.substr(0, line.text.find('#')));
-    return line;
-}
-
 std::vector<io::ProgramStop> read_ur(const std::string& path, const ControllerJoints& joints) {
     const ProgramFile file(path);
     StopCollector stops(ur_program().rules, joints);
     for (const TextLine& whole : file.lines()) {
+        check_ur(whole);
         const TextLine line = without_comment(whole);
         if (line.text.empty()) {
             stops.note(whole.text.substr(1));
@@ -131,9 +159,11 @@ const ProgramKind& ur_program() {
                   .has_then = false},
          .waits = "sleep popup",
          .messages = "textmsg popup",
-         .target = "(["},
+         .target = "([",
+         .target_numbers = 6},
         &ur_files,
-        &read_ur};
+        &read_ur,
+        &check_ur};
     return kind;
 }
 
