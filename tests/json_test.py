@@ -327,6 +327,10 @@ def check_correct():
     row, one = next(csv.DictReader(open("c.csv"))), document["configurations"][0]
     expect(row["config"] == one["id"] and close(float(row["q1_deg"]), one["joints"]["q1_deg"], 12)
            and close(float(row["uncorrected_mm"]), one["uncorrected_mm"], 5), "correct: c.csv")
+    expect(document["lines_not_corrected"] == [], "correct: a table has no other lines")
+    pathlib.Path("weld.script").write_text("movej([0, 0, 0, 0, -1, 0])\nmovel(p[1, 0, 1, 0, 0, 0])\n")
+    document = json.loads(run("correct", FANUC, "e.json", "--poses", "weld.script", "--for", "ur", "--json"))
+    expect(document["lines_not_corrected"] == [2], "correct: lines of a program")
 
 
 def check_export():

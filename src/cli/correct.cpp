@@ -330,7 +330,10 @@ void correct(const CorrectArguments& arguments, const CommonOptions& common) {
         warn_of_name(arguments, program->format);
     }
     write_corrected(arguments, file, poses, corrected, program, frames);
-    if (common.json) return print_document(io::to_json(corrected, file));
+    if (common.json) {
+        return print_document(
+            io::to_json(corrected, file, program ? program->program.others : std::vector<long>{}));
+    }
     print(fmt::format(
         "{}: {} corrected{}\n", file.name,
         detail::count_of(std::ssize(poses.ids),

@@ -69,7 +69,9 @@ std::string to_json(const BlocksStudy& study);
 
 std::string to_json(const Simulation& simulation, const Campaign& campaign);
 
-std::string to_json(const CorrectedPoses& poses, const Campaign& campaign);
+/// `left` are the lines of a program whose targets stay as they are.
+std::string to_json(const CorrectedPoses& poses, const Campaign& campaign,
+                    const std::vector<long>& left = {});
 
 /// A written file and how it differs when read back.
 struct ReadBack {

@@ -386,7 +386,8 @@ std::string to_json(const Simulation& simulation, const Campaign& campaign) {
     return detail::json_text(document);
 }
 
-std::string to_json(const CorrectedPoses& poses, const Campaign& campaign) {
+std::string to_json(const CorrectedPoses& poses, const Campaign& campaign,
+                    const std::vector<long>& left) {
     Json document = detail::make_document("correction");
     document["campaign"] = campaign.name;
     document["uncorrected"] = pose_error_to_json(poses.corrections, &Correction::uncorrected);
@@ -395,6 +396,7 @@ std::string to_json(const CorrectedPoses& poses, const Campaign& campaign) {
     for (const Index i : poses.not_home) {
         document["not_brought_home"].push_back(poses.ids[static_cast<std::size_t>(i)]);
     }
+    document["lines_not_corrected"] = left;
     Json& list = document["configurations"] = Json::array();
     for (std::size_t i = 0; i < poses.ids.size(); ++i) {
         list.push_back(correction_to_json(poses.ids[i], poses.corrections[i], campaign));
