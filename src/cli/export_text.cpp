@@ -154,6 +154,10 @@ void print_export(const io::ExportedRobot& robot, const io::CampaignFile& file,
     if (robot.urdf) print_urdf(*robot.urdf, file, paths.urdf);
     if (!robot.dh.empty()) print_dh(robot.dh, file, paths.dh);
     if (robot.frames) print_frames(file, paths.ur_kinematics);
+    if (!paths.mujoco.empty()) {
+        print(fmt::format("{}: the calibrated robot as a model for MuJoCo is in {}\n", file.name,
+                          detail::escape_controls(paths.mujoco)));
+    }
     if (robot.map) print_map(*robot.map, file, paths.map);
     if (robot.camera) print_camera(*robot.camera, file, paths.camera);
     print_loss(robot);

@@ -12,6 +12,7 @@ struct ExportPaths {
     std::string urdf;
     std::string dh;
     std::string ur_kinematics;
+    std::string mujoco;
     std::string map;
     std::string camera;
 };

@@ -78,6 +78,39 @@ TEST_F(Export, LeavesOutAURsHalfTurnFromBaseLinkAndRefusesAnother) {
                        "kinematics of a UR begin at base_link_inertia");
 }
 
+TEST_F(Export, WritesAModelForMuJoCo) {
+    calibrate(R"(name: A & B
+robot:
+  errors: geometric
+  joints: {q1: {limits_deg: [-90, 90]}, q2: {limits_deg: [-90, 90]}, q3: {limits_mm: [0, 400]}}
+  elements: [Rz q1, Tx 300 mm, Ry -q2, Tx 500 mm, Rx 0.3 rad, Tz q3, Ry 0.5*q2]
+sensor: {kind: points, sigma_mm: 0.01, targets: {position_mm: [[100, 0, 0], [0, 100, 0], [0, 0, 100]]}}
+)" + base_);
+    const std::string text = run_well("export c.yaml e.json --mujoco arm.xml");
+    EXPECT_NE(text.find("A & B: the calibrated robot as a model for MuJoCo is in arm.xml\n"),
+              std::string::npos)
+        << text;
+    EXPECT_NE(text.find("arm.xml read back: the flange is within "), std::string::npos) << text;
+    const std::string model = text_of("arm.xml");
+    EXPECT_EQ(model.rfind("<mujoco model=\"A &amp; B, calibrated\">\n", 0), 0U) << model;
+    for (const char* const part :
+         {"<compiler angle=\"radian\"", "<joint name=\"q3\" type=\"slide\" axis=\"0 0 1\" ",
+          "limited=\"true\" range=\"0 0.4\"", "<joint name=\"q2\" type=\"hinge\" axis=\"0 -1 0\" ",
+          "<joint joint1=\"q2.2\" joint2=\"q2\" polycoef=\"0 0.5 0 0 0\"",
+          "<site name=\"target3\""}) {
+        EXPECT_NE(model.find(part), std::string::npos) << part << '\n' << model;
+    }
+    calibrate(R"(name: half
+robot:
+  errors: geometric
+  joints: {q1: {limits_deg: [-90, 90]}, q2: {limits_deg: [-90, 90]}, q3: {limits_deg: [-90, 90]}}
+  elements: [Rz 0.5*q1, Tx 300 mm, Ry q2, Tx 500 mm, Ry q3, Tz 300 mm]
+sensor: {kind: points, sigma_mm: 0.01, targets: {position_mm: [[100, 0, 0], [0, 100, 0], [0, 0, 100]]}}
+)" + base_);
+    expect_input_error("export c.yaml e.json --mujoco other.xml",
+                       "other.xml: joint 'q1' drives nothing by a factor of 1");
+}
+
 TEST_F(Export, WritesAMapOfWhatDependsOnTheConfiguration) {
     calibrate(R"(name: arm
 robot:

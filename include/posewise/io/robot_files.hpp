@@ -9,6 +9,7 @@
 #include "posewise/model/chain.hpp"
 #include "posewise/model/dh.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "posewise/task/inspection.hpp"
 
 namespace posewise::io {
 
@@ -145,7 +146,14 @@ FlangeDifference write_ur_kinematics(const std::string& path, const std::string&
                                      const UrFrames& frames, const Chain& robot,
                                      const VectorXd& errors);
 
-/// Reads such a file. Throws InputError with path:line:column for another one.
+/// A model for MuJoCo (MJCF): qpos of the joints that are called as the robot's are their values,
+/// rad or m. A joint "q2.2", where q2 drives a further element (couplings) or one by another
+/// factor, follows it by an equality. Sites are "flange" and "target1", ... or "tool"; masses are
+/// not known. Throws InputError also if a joint drives no element by a factor of 1 or -1.
+FlangeDifference write_mujoco(const std::string& path, const std::string& title,
+                              const Geometry& geometry);
+
+/// Reads UR kinematics. Throws InputError with path:line:column for another file.
 UrFrames read_ur_kinematics(const std::string& path);
 
 /// A robot as the section `robot` of a campaign file with a standard Denavit-Hartenberg table, in

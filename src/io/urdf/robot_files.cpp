@@ -10,6 +10,7 @@
 #include "io/campaign/robot_parts.hpp"
 #include "io/format/atomic_file.hpp"
 #include "io/format/yaml_reader.hpp"
+#include "mujoco_model.hpp"
 #include "posewise/model/chain.hpp"
 #include "urdf_tree.hpp"
 
@@ -114,6 +115,15 @@ FlangeDifference write_ur_kinematics(const std::string& path, const std::string&
     return write_robot(path, ur_text(escape_controls(title), frames), without_half_turn(robot),
                        without(robot, errors, {}), read,
                        {ur_rounding.position + 1e-9, ur_rounding.orientation + 1e-9});
+}
+
+FlangeDifference write_mujoco(const std::string& path, const std::string& title,
+                              const Geometry& geometry) {
+    const Chain& robot = geometry.robot;
+    return write_robot(path, mujoco_text(escape_controls(title), geometry), robot,
+                       without(robot, geometry.errors, {}), [&](const std::string& written) {
+                           return read_mujoco(written, robot.joints());
+                       });
 }
 
 UrFrames read_ur_kinematics(const std::string& path) {

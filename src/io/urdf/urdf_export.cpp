@@ -6,19 +6,15 @@
 #include "posewise/model/error_terms.hpp"
 #include "urdf_tree.hpp"
 
-namespace posewise::io {
+namespace posewise::detail {
 namespace {
-
-using namespace detail;
-using pugi::xml_node;
 
 Isometry3d product_of(const std::vector<Element>& elements, const VectorXd& parameters) {
     return Chain({}, elements).base_from_flange(VectorXd(), parameters);
 }
 
-/// What is constant before, between and after the joints of a chain: base_from_flange(q) =
-/// C_0 M_1(q_1) C_1 ... M_n(q_n) C_n. The constant part of a joint's element counts to what is
-/// before it, error terms to none.
+}  // namespace
+
 std::vector<Isometry3d> constants_of(const Chain& robot, const VectorXd& parameters) {
     std::vector<Isometry3d> constants;
     std::vector<Element> elements;
@@ -43,6 +39,14 @@ std::vector<Isometry3d> constants_of(const Chain& robot, const VectorXd& paramet
     finish();
     return constants;
 }
+
+}  // namespace posewise::detail
+
+namespace posewise::io {
+namespace {
+
+using namespace detail;
+using pugi::xml_node;
 
 /// The turn of a joint's frame that puts its axis on a coordinate axis, see joint_elements(), and
 /// what a mimic moves by where the joint that it mimics is at zero.

@@ -52,4 +52,9 @@ io::UrdfJoint read_urdf_joint(const XmlDocument& document, pugi::xml_node elemen
 /// io::make_chain() of a robot whose limits, stated or not, do not matter.
 Chain make_chain_without_limits(io::UrdfRobot robot);
 
+/// What is constant before, between and after the joints of a chain: base_from_flange(q) =
+/// C_0 M_1(q_1) C_1 ... M_n(q_n) C_n. The constant part of a joint's element counts to what is
+/// before it, error terms to none.
+std::vector<Isometry3d> constants_of(const Chain& robot, const VectorXd& parameters);
+
 }  // namespace posewise::detail
