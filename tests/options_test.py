@@ -56,6 +56,7 @@ WAYS = [
     ["indices", "arm.yaml", "-m", "many.csv"],
     ["indices", "--blocks", "blocks.csv", "--rows", "3"],
     ["select", "arm.yaml", "-m", "many.csv", *CHOICE],
+    ["select", "arm.yaml", "-m", "points.csv", "--plan", "plan.json", *CHOICE],
     ["select", "arm.yaml", "--random", "40", *CHOICE],
     ["select", "arm.yaml", "--candidates", "pool.csv", *CHOICE],
     ["select", "--blocks", "blocks.csv", "--rows", "3", *CHOICE],

@@ -11,7 +11,7 @@ namespace posewise::cli {
 
 void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
     CalibrationOptions& options = arguments.options;
-    add_points_options(command, arguments.paths,
+    add_points_options(command, arguments.paths.plan, arguments.paths.points_unit,
                        "Use only the configurations of this plan, judge on those it has to verify "
                        "and on the others");
     add_exclude_option(command, options.excluded);

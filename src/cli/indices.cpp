@@ -122,7 +122,8 @@ void add_indices(CLI::App& program, const CommonOptions& common) {
         program.add_subcommand("indices", "Rate measured configurations by every index");
     add_campaign_argument(*command, arguments->paths)->required(false);
     add_measurements_option(*command, arguments->paths)->required(false);
-    add_points_options(*command, arguments->paths, "Only the configurations of this plan");
+    add_points_options(*command, arguments->paths.plan, arguments->paths.points_unit,
+                       "Only the configurations of this plan");
     add_exclude_option(*command, arguments->excluded);
     add_prior_option(*command, arguments->prior, ": told beside what is measured");
     command->add_option("--directions", arguments->directions, "How many weak directions to name")

@@ -184,7 +184,7 @@ void add_inspect(CLI::App& program, const CommonOptions& common) {
                      "Measured configurations (CSV, or MATLAB .mat), or with --plan a list of "
                      "points: check how they are meant")
         ->check(file_name());
-    add_points_options(*command, arguments->paths,
+    add_points_options(*command, arguments->paths.plan, arguments->paths.points_unit,
                        "Plan whose poses a list of points was measured at");
     for (const char* const option : {"--plan", "--points-unit"}) {
         command->get_option(option)->needs("--measurements");

@@ -48,12 +48,12 @@ std::string describe_unused_planning(const io::CampaignFile& campaign) {
                        io::error_model_name(*campaign.planned_model));
 }
 
-void add_points_options(CLI::App& command, InputPaths& paths, const std::string& plan_help) {
-    command
-        .add_option("--plan", paths.plan, plan_help + " (its JSON, or its configurations as CSV)")
+void add_points_options(CLI::App& command, std::string& plan, std::string& points_unit,
+                        const std::string& plan_help) {
+    command.add_option("--plan", plan, plan_help + " (its JSON, or its configurations as CSV)")
         ->check(file_name());
     command
-        .add_option("--points-unit", paths.points_unit,
+        .add_option("--points-unit", points_unit,
                     "Unit of a list of points that does not state it: mm, m or um")
         ->check(CLI::IsMember(detail::unit_names(detail::Quantity::Length)));
 }

@@ -22,7 +22,8 @@ std::string describe_planned(const io::CampaignFile& campaign, double repeats);
 std::string describe_unused_planning(const io::CampaignFile& campaign);
 
 /// --plan, whose help begins with what else it is for, and --points-unit.
-void add_points_options(CLI::App& command, InputPaths& paths, const std::string& plan_help);
+void add_points_options(CLI::App& command, std::string& plan, std::string& points_unit,
+                        const std::string& plan_help);
 
 /// The plan that the paths name, if they do: as plan writes it, JSON or CSV.
 std::optional<Plan> read_measured_plan(const InputPaths& paths, const io::CampaignFile& file);

@@ -12,22 +12,35 @@
 namespace posewise::cli {
 namespace {
 
+/// Measurements and their plan, if they are a list of points.
+InputPaths paths_of(const std::string& measurements, const PlanSources& sources) {
+    return {"", measurements, sources.measured_plan, sources.points_unit};
+}
+
 /// Poses measured already, --augment.
 std::optional<Measurements> read_held(const PlanRequest& request,
                                       const io::CampaignFile& campaign) {
     const PlanSources& sources = request.sources;
     if (sources.augment.empty()) return std::nullopt;
-    Measurements held = read_measured(sources.augment, campaign);
+    const InputPaths paths = paths_of(sources.augment, sources);
+    const std::optional<Plan> plan = read_measured_plan(paths, campaign);
+    io::MeasurementsFile held = read_measured(sources.augment, campaign, points_of(paths, plan));
+    check_needs_unit(paths, held);
     warn_of_counting_twice(sources.estimate, request.earlier.is_prior, sources.augment, held);
     return held;
 }
 
-Candidates read_candidates(const std::string& path, CandidateKind kind,
+Candidates read_candidates(const PlanSources& sources, CandidateKind kind,
                            const io::CampaignFile& campaign) {
     if (kind == CandidateKind::Measurements) {
-        return measured_candidates(read_measured_without({}, {"", path}, campaign, {}));
+        const InputPaths paths = paths_of(sources.candidates, sources);
+        const io::MeasurementsFile read =
+            read_measured_without({}, paths, campaign, {}, read_measured_plan(paths, campaign));
+        // Else the plan may be that of --augment.
+        if (sources.augment.empty()) check_needs_plan(paths, read);
+        return measured_candidates(read);
     }
-    io::Configurations read = io::read_configurations(path, campaign);
+    io::Configurations read = io::read_configurations(sources.candidates, campaign);
     return {kind, std::move(read.ids), std::move(read.joints), read.is_seen.cast<double>(),
             std::nullopt};
 }
@@ -51,7 +64,7 @@ void read_with_robot(ChoiceInputs& inputs, CandidateKind kind, Index count) {
     const PlanSources& sources = options.sources;
     const io::CampaignFile& campaign = *inputs.campaign;
     if (kind != CandidateKind::Random) {
-        inputs.candidates = read_candidates(sources.candidates, kind, campaign);
+        inputs.candidates = read_candidates(sources, kind, campaign);
     }
     options.held = read_held(options, campaign);
     if (kind == CandidateKind::Random) {

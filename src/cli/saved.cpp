@@ -99,7 +99,7 @@ ShownFile show_plan_file(const std::string& path) {
     if (part.document.empty()) part.document = io::read_saved_document(path, io::SavedKind::Plan);
     const PlanSources& sources = plan.request.sources;
     shown.read = {sources.campaign,   sources.estimate, sources.candidates, sources.augment,
-                  sources.test_poses, sources.groups,   sources.workspace};
+                  sources.test_poses, sources.groups,   sources.workspace,  sources.measured_plan};
     shown.summary = "plan of " + detail::count_of(std::ssize(plan.poses), "pose");
     return shown;
 }

@@ -32,6 +32,7 @@ Example:
   posewise select campaign.yaml --candidates pool.csv -k 6 --augment measured.csv
   posewise select --blocks jacobians.csv --rows 9 -k 40 --criterion a
   posewise select --blocks jacobians.npy -k 40
+  posewise select campaign.yaml -m points.txt --plan plan.json -k 12
   posewise select campaign.yaml --random 2000 -k 20 --relax --out weights.csv
 
 Chooses the candidates that tell most about the parameters, writes them as a plan file (JSON) for
@@ -135,10 +136,10 @@ void select(const SelectArguments& arguments, const CommonOptions& common) {
     const PlanSources& sources = request.sources;
     const bool has_default = arguments.out.empty() && !arguments.relaxes;
     const std::string out = has_default ? default_select_out(sources) : arguments.out;
-    check_outputs(
-        {file ? &*file : nullptr},
-        {sources.estimate, sources.candidates, sources.augment, sources.test_poses, sources.groups},
-        {out, arguments.page}, common);
+    check_outputs({file ? &*file : nullptr},
+                  {sources.estimate, sources.candidates, sources.augment, sources.measured_plan,
+                   sources.test_poses, sources.groups},
+                  {out, arguments.page}, common);
     ChoiceInputs inputs =
         read_choice_inputs(request, kind_of(arguments), arguments.random, std::move(file));
     if (!inputs.campaign) print_size(inputs.blocks, common);

@@ -2,6 +2,7 @@
 
 #include "blocks_options.hpp"
 #include "common.hpp"
+#include "measured.hpp"
 #include "options.hpp"
 #include "page.hpp"
 
@@ -55,6 +56,8 @@ void add_select_problem(CLI::App& command, SelectArguments& arguments) {
         .add_option("--augment", request.sources.augment,
                     "Poses measured already: their information is there, they are not chosen")
         ->check(file_name());
+    add_points_options(command, request.sources.measured_plan, request.sources.points_unit,
+                       "Plan whose poses -m or --augment, a list of points, was measured at");
     add_ids_option(command, "--exclude", request.excluded, "Ids not to choose, by commas");
     command.add_option("--groups", request.sources.groups, "CSV that gives each candidate a group")
         ->check(file_name());
@@ -115,6 +118,11 @@ void check_select_usage(const SelectArguments& arguments) {
                   "--force", "is of an estimate or of measurements; needs --from or -m");
     require_usage(!is_plain || arguments.focus == "all", "--focus", "needs a robot");
     require_usage(!is_plain || arguments.earlier.from.empty(), "--from", "needs a robot");
+    require_usage(sources.measured_plan.empty() || !arguments.measurements.empty() ||
+                      (!is_plain && !sources.augment.empty()),
+                  "--plan", "joins a list of points; needs -m or --augment");
+    require_usage(sources.points_unit.empty() || !sources.measured_plan.empty(), "--points-unit",
+                  "needs --plan");
     const bool has_distance = arguments.least_distance_deg != 0;
     require_usage(!is_plain || !has_distance, "--least-distance-deg", "needs a robot");
     require_usage(sources.groups.empty() == (request.group_limit == 0), "--groups",

@@ -91,7 +91,7 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
             arguments.criteria = parse_names(text, "--criteria", "d,a", parse_criterion);
         },
         "Criteria to choose by, such as v,d,o1 (default: the campaign's, else v)");
-    add_points_options(command, arguments.paths,
+    add_points_options(command, arguments.paths.plan, arguments.paths.points_unit,
                        "Plan whose poses a list of points was measured at");
     add_exclude_option(command, arguments.excluded);
     command

@@ -130,10 +130,11 @@ void verify_file(const VerifyArguments& arguments, const CommonOptions& common) 
     const std::string& targets = arguments.targets;
     const PlanSources& sources = plan.request.sources;
     if (!targets.empty()) {
-        check_outputs({&*campaign},
-                      {arguments.plan, sources.estimate, sources.candidates, sources.augment,
-                       sources.groups, sources.test_poses, sources.workspace},
-                      {targets}, common);
+        check_outputs(
+            {&*campaign},
+            {arguments.plan, sources.estimate, sources.candidates, sources.augment, sources.groups,
+             sources.test_poses, sources.workspace, sources.measured_plan},
+            {targets}, common);
         detail::check_has_targets(targets, *campaign);
     }
     const Verification verification = plan.is_continuous()

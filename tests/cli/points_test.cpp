@@ -172,6 +172,39 @@ TEST_F(Points, ServeEveryCommandThatTakesMeasurements) {
     run_well("calibrate c.yaml -m m.csv --validate p.csv --plan plan.json -o e.json");
 }
 
+TEST_F(Points, AreChosenFromAndCountAsMeasured) {
+    const auto row = [](const Point& p) { return p.name + ',' + p.x + ',' + p.y + ',' + p.z; };
+    write_list("p.csv", shuffled_, row);
+    const std::string head = "name,x_mm,y_mm,z_mm\n";
+    std::vector<Point> few = shuffled_;
+    std::erase_if(few, [](const Point& p) { return p.name[0] != 'v'; });
+    write_list("few.csv", few, row, head);
+    std::string table;
+    std::istringstream lines(text_of("m.csv"));
+    for (std::string line; std::getline(lines, line);) {
+        if (line[0] != 'p') table += line + '\n';
+    }
+    write_text("few_table.csv", table);
+    const auto plan_of = [&](const std::string& arguments, const std::string& out) {
+        run_well("select c.yaml -c d --starts 1 -k 6 --prior " + arguments + " -o " + out);
+        Json plan = Json::parse(text_of(out));
+        return std::pair(plan.at("poses"), plan.at("value"));
+    };
+    const std::string joined = "-m p.csv --plan poses.csv --points-unit mm";
+    EXPECT_EQ(plan_of(joined, "a.json"), plan_of("-m m.csv", "b.json"));
+    EXPECT_EQ(plan_of("--candidates poses.csv --augment few.csv --plan poses.csv", "c.json"),
+              plan_of("--candidates poses.csv --augment few_table.csv", "d.json"));
+    EXPECT_NE(plan_of("--candidates poses.csv", "e.json"),
+              plan_of("--candidates poses.csv --augment few.csv --plan poses.csv", "c.json"));
+    for (const std::string plan : {"a.json", "c.json"}) run_well("verify " + plan);
+    run_well("report a.json -o a.html");
+    expect_input_error("select c.yaml -m p.csv -k 6 -o f.json", "p.csv");
+    expect_input_error("select c.yaml -m m.csv --plan poses.csv -k 6 -o f.json",
+                       "m.csv: has joint values of its own; --plan must be left out");
+    EXPECT_EQ(run("select c.yaml --random 50 --plan poses.csv -k 6 -o f.json").code, 2);
+    EXPECT_EQ(run("select c.yaml -m p.csv --points-unit mm -k 6 -o f.json").code, 2);
+}
+
 TEST_F(Points, WhatIsWrongIsSaidAndNothingWritten) {
     const auto row = [](const Point& p) { return p.name + ' ' + p.x + ' ' + p.y + ' ' + p.z; };
     write_list("p.txt", shuffled_, row);

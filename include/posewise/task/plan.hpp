@@ -38,6 +38,8 @@ struct PlanSources {
     std::string groups;
     std::string repaired;  ///< the plan that was repaired
     std::string workspace;
+    std::string measured_plan;  ///< of a list of points: the plan whose poses were measured
+    std::string points_unit;    ///< of the list, if it does not state it
 };
 
 /// A criterion, or none stated.

@@ -244,6 +244,8 @@ void problem_fields(const Fields& file, Plan& plan, const FilePath& path) {
     file("prior", request.has_prior);
     file("focus", request.is_focused_on_robot, OneOf(foci));
     file("augment", sources.augment, path);
+    file.optional("measured_plan", !sources.measured_plan.empty(), sources.measured_plan, path);
+    file.optional("points_unit", !sources.points_unit.empty(), sources.points_unit);
     if (file.has("estimate", !sources.estimate.empty())) {
         earlier_fields(file["estimate"], request, path);
     }
