@@ -329,7 +329,7 @@ def check_correct():
            and close(float(row["uncorrected_mm"]), one["uncorrected_mm"], 5), "correct: c.csv")
     expect(document["lines_not_corrected"] == [], "correct: a table has no other lines")
     pathlib.Path("weld.script").write_text("movej([0, 0, 0, 0, -1, 0])\nmovel(p[1, 0, 1, 0, 0, 0])\n")
-    document = json.loads(run("correct", FANUC, "e.json", "--poses", "weld.script", "--for", "ur", "--json"))
+    document, _ = both("correct", FANUC, "e.json", "--poses", "weld.script", "--for", "ur")
     expect(document["lines_not_corrected"] == [2], "correct: lines of a program")
 
 
