@@ -15,6 +15,7 @@
 namespace posewise::io {
 namespace {
 
+using namespace detail;
 using namespace testing;
 
 VectorXd numbers_of(pugi::xml_node node, const char* attribute, Index count) {
@@ -119,7 +120,8 @@ TEST(WriteMujoco, HasTheFlangeAndTargetsWhereTheCalibratedRobotHasThem) {
             const auto joint =
                 std::ranges::find(joints, found.node().attribute("name").value(), &Joint::name);
             ASSERT_NE(joint, joints.end());
-            EXPECT_EQ(numbers_of(found.node(), "range", 2), Vector2d(joint->lower, joint->upper));
+            EXPECT_EQ(numbers_of(found.node(), "range", 2),
+                      Eigen::Vector2d(joint->lower, joint->upper));
         }
         EXPECT_EQ(std::ssize(model.select_nodes("//joint[@range]")), geometry.robot.joint_count());
     }

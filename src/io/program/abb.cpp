@@ -129,7 +129,6 @@ std::vector<io::ProgramStop> read_abb(const std::string& path, const ControllerJ
     const ProgramFile file(path, "ENDMODULE");
     StopCollector stops(abb_program().rules, joints);
     for (const TextLine& line : file.lines()) {
-        check_abb(line);
         for (const TextLine& one : abb_statements(line)) {
             if (one.begins_with("!")) {
                 stops.note(one.text.substr(1));
@@ -142,6 +141,7 @@ std::vector<io::ProgramStop> read_abb(const std::string& path, const ControllerJ
                 stops.pass(one);
             }
         }
+        check_abb(line);
     }
     return stops.finish();
 }
