@@ -140,23 +140,35 @@ double needed_clearance(Eigen::Ref<VectorXd> clearances, Index needed) {
 
 ShownPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, Index count,
                         std::uint64_t seed) {
-    constexpr Index drawn_for_each = 64;
-    const RowMatrixXd drawn = random_configurations(campaign.robot, drawn_for_each * count, seed);
     const Sensor& sensor = *campaign.sensor;
-    VectorXd clearances(sensor.target_count());
     std::vector<std::pair<double, Index>> hidden;  // by how much, 0: it is in view
-    for (Index i = 0; i < drawn.rows(); ++i) {
-        const Isometry3d flange = world_from_flange(campaign, parameters, drawn.row(i).transpose());
-        sensor.view_clearances(flange, parameters.sensor, clearances);
-        const double clearance = needed_clearance(clearances, sensor.least_in_view());
-        hidden.emplace_back(std::max(0.0, -clearance), i);
+    RowMatrixXd drawn;
+    Seen in_view;
+    for (const Index drawn_for_each : {64, 1024}) {  // few see a board that lies on a table
+        drawn = random_configurations(campaign.robot, drawn_for_each * count, seed);
+        in_view.resize(drawn.rows(), sensor.target_count());
+        hidden.clear();
+        VectorXd clearances(sensor.target_count());
+        for (Index i = 0; i < drawn.rows(); ++i) {
+            const Isometry3d flange =
+                world_from_flange(campaign, parameters, drawn.row(i).transpose());
+            sensor.view_clearances(flange, parameters.sensor, clearances);
+            in_view.row(i) = (clearances.array() >= 0).transpose();
+            const double clearance = needed_clearance(clearances, sensor.least_in_view());
+            hidden.emplace_back(std::max(0.0, -clearance), i);
+        }
+        std::ranges::sort(hidden);
+        if (hidden[static_cast<std::size_t>(count - 1)].first == 0) break;
     }
-    std::ranges::sort(hidden);
-    RowMatrixXd poses(count, drawn.cols());
+    ShownPoses poses{RowMatrixXd(count, drawn.cols()), Seen(count, sensor.target_count())};
     for (Index k = 0; k < count; ++k) {
-        poses.row(k) = drawn.row(hidden[static_cast<std::size_t>(k)].second);
+        const auto& [by, i] = hidden[static_cast<std::size_t>(k)];
+        poses.configurations.row(k) = drawn.row(i);
+        // A corner out of view may be near the camera's plane, where it moves beyond all others.
+        poses.is_seen.row(k) = in_view.row(i);
+        if (by > 0) poses.is_seen.row(k).setConstant(true);
     }
-    return {std::move(poses), Seen::Constant(count, sensor.target_count(), true)};
+    return poses;
 }
 
 ShownPoses random_poses(const Campaign& campaign, const Parameters& parameters, Index count,
