@@ -61,7 +61,8 @@ sight not asked for; --workspace or --workspace-box-mm state another.
 --target-mm finds the least number of poses whose plan keeps the error below it with the probability
 --assurance, over errors, sizes and model error that nobody knows yet; with --robust-to even if so
 many poses are missing. "enough" says how far that number may be off: which ones are enough with 5
-and with 95 % probability. Where none does, it says what is left at best and why: exit code 1, no plan.
+and with 95 % probability. Where none does, it says what is left at best, why, and how many may do
+all the same: exit code 1, no plan.
 --minutes takes as many as fit; with --target-mm it says whether both can be kept.
 
 --verification adds poses to judge the calibration on (v1, v2, ...): random in the workspace, visited

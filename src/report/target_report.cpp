@@ -70,6 +70,29 @@ Table curve_table(const TargetPlanning& found) {
     return table;
 }
 
+/// "9 poses with 5 % probability, more than 60 with 95 %".
+std::string describe_counts(const CountRange& counts, double floor, double limit) {
+    std::string text = counts.lower ? count_of(*counts.lower, "new pose")
+                                    : fmt::format("more than {}", counts.most);
+    text += " with 5 % probability, ";
+    if (floor > limit) {
+        text += fmt::format("no number with 95 % (floor {} mm)", format_mm(floor));
+    } else if (counts.upper) {
+        text += fmt::format("{} with 95 %", *counts.upper);
+    } else {
+        text += fmt::format("more than {} with 95 %", counts.most);
+    }
+    return text;
+}
+
+/// "Enough are 14 new poses with 5 % probability, no number with 95 % (floor 0.9 mm); ": where the
+/// limit may be kept all the same. Empty: hardly.
+std::string describe_luck(const TargetPlanning& found) {
+    if (!found.counts || !found.counts->lower) return "";
+    return "enough are " + describe_counts(*found.counts, found.floor.upper, *found.target.limit) +
+           "; ";
+}
+
 /// What would lower the floor.
 std::string describe_remedy(const TargetPlanning& found) {
     const bool is_model = found.left_over >= found.repeatability;
@@ -117,21 +140,6 @@ std::string describe_narrowing(const TargetPlanning& found) {
         "; plan --poses {}, measure them, calibrate --out estimate.json and ask again with --from "
         "estimate.json: that knows the robot",
         std::min<Index>(12, planning.search.pose_count));
-}
-
-/// "9 poses with 5 % probability, more than 60 with 95 %".
-std::string describe_counts(const CountRange& counts, double floor, double limit) {
-    std::string text = counts.lower ? count_of(*counts.lower, "new pose")
-                                    : fmt::format("more than {}", counts.most);
-    text += " with 5 % probability, ";
-    if (floor > limit) {
-        text += fmt::format("no number with 95 % (floor {} mm)", format_mm(floor));
-    } else if (counts.upper) {
-        text += fmt::format("{} with 95 %", *counts.upper);
-    } else {
-        text += fmt::format("more than {} with 95 %", counts.most);
-    }
-    return text;
 }
 
 }  // namespace
@@ -237,13 +245,14 @@ std::string describe_shortfall(const TargetPlanning& found) {
         fmt::format("floor {} mm ({})", format_mm(found.floor.assured), percent(target.assurance));
     switch (found.ending) {
         case TargetEnding::BelowFloor:
-            return fmt::format("{}: unattainable: {}; {}", describe_limit(target), floor,
-                               describe_remedy(found));
+            return fmt::format("{}: unattainable: {}; {}{}", describe_limit(target), floor,
+                               describe_luck(found), describe_remedy(found));
         case TargetEnding::TooManyPoses:
             return fmt::format(
-                "{}: not reached: {}; {}; more may be stated (--poses-at-most, --pool)",
+                "{}: not reached: {}; {}; {}more may be stated (--poses-at-most, --pool)",
                 describe_limit(target),
-                describe_best(found, std::numeric_limits<double>::infinity()), floor);
+                describe_best(found, std::numeric_limits<double>::infinity()), floor,
+                describe_luck(found));
         case TargetEnding::TooLong:
             return fmt::format("{}: not reached in {} min, in which {}; {}", describe_limit(target),
                                format_short(*target.duration / seconds_per_minute),

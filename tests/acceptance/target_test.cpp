@@ -210,13 +210,38 @@ TEST_F(Target, BelowTheFloorIsNotReachedByAnyNumber) {
     // Of a model error of 0.1 mm a coordinate, known within a factor of 2.5.
     EXPECT_NEAR(below.floor.assured, std::sqrt(3.0) * 1e-4 * std::pow(2.5, 1.645), 2e-6);
     EXPECT_NEAR(below.floor_of_known_model_error, std::sqrt(3.0) * 1e-4, 1e-9);
+    // Below the floor of even a small model error, 3.84e-5 m, no number is looked for.
+    target_.limit = 3.8e-5;
+    EXPECT_FALSE(find().counts);
+    EXPECT_NEAR(below.floor.lower, 3.837e-5, 1e-8);
     target_.limit = 0.8e-3;
     target_.most_poses = 12;
     const TargetPlanning few = find();
     EXPECT_EQ(few.ending, TargetEnding::TooManyPoses);
     EXPECT_FALSE(few.planning.has_value());
+    ASSERT_TRUE(few.counts);
+    EXPECT_EQ(few.counts->most, 12);
+    EXPECT_FALSE(few.counts->upper);
     ASSERT_FALSE(few.curve.empty());
     EXPECT_GT(few.curve.back().error->assured, 0.8e-3);
+}
+
+TEST_F(Target, ThatIsMissedTellsWhatWouldDoWithLuck) {
+    target_.limit = 0.5e-3;
+    const TargetPlanning below = find();
+    EXPECT_EQ(below.ending, TargetEnding::BelowFloor);
+    ASSERT_TRUE(below.counts && below.counts->lower) << describe_shortfall(below);
+    EXPECT_FALSE(below.counts->upper);
+    for (const CountPrediction& one : below.curve) {
+        if (!one.error) continue;
+        EXPECT_EQ(one.error->lower <= 0.5e-3, one.pose_count >= *below.counts->lower)
+            << one.pose_count;
+    }
+    const std::string text = describe_shortfall(below);
+    EXPECT_NE(text.find("enough are "), std::string::npos) << text;
+    EXPECT_NE(text.find(" with 5 % probability, no number with 95 % (floor 0.78"),
+              std::string::npos)
+        << text;
 }
 
 TEST_F(Target, AsManyPosesAsFitInTheTime) {

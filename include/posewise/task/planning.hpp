@@ -136,7 +136,9 @@ struct TargetPlanning {
     /// No plan with one pose less keeps the limit (without a limit: none with one more fits), as
     /// far as a completed search found. False: stopped early, there may be one.
     bool is_settled = false;
-    std::optional<CountRange> counts;       ///< for a limit; nothing: stopped early
+    /// For a limit, kept or not; nothing: stopped early, or too long, or the floor of even the 5 %
+    /// end is above the limit.
+    std::optional<CountRange> counts;
     std::vector<CountPrediction> curve;     ///< by count, as far as looked at
     ErrorRange floor;                       ///< error left if the parameters are known exactly
     double floor_of_known_model_error = 0;  ///< m; likewise once an estimate tells it

@@ -85,21 +85,31 @@ class Search {
                 "{} new poses are needed at least; the pool or the most that are allowed are {}",
                 least_, most_chosen()));
         }
-        constexpr Index many = 200;  // plans of more take long, and tell hardly more than choices
         const Index by_choices = count_by_choices();
         if (has_limit() && by_choices > most_chosen() && most_chosen() > many) {
             result_.ending = TargetEnding::TooManyPoses;
-            return fill_curve();
+            return look_for_luck();
         }
         tell(1, by_choices);
         const Index by_plans = options_.stop.is_set() ? by_choices : count_by_plans(by_choices);
         tell(2, by_plans);
         settle(by_plans);
+        if (result_.ending == TargetEnding::TooManyPoses) return look_for_luck();
         look_around();
         fill_curve();
     }
 
+    /// What no number of poses keeps with the assurance asked for, some may keep with less.
+    void look_for_luck() {
+        if (least_ > most_chosen()) return;
+        find_counts(least_, std::min(most_chosen(), many));
+        fill_curve();
+    }
+
   private:
+    /// Plans of more take long, and tell hardly more than choices.
+    static constexpr Index many = 200;
+
     bool has_limit() const { return target_.limit.has_value(); }
 
     /// The number so far: plans around it take most of the time.
@@ -275,20 +285,26 @@ class Search {
             if (other >= least_ && other <= most_chosen()) choose(other);
         }
         if (!has_limit()) return;
-        CountRange range{{}, {}, std::max(least_, std::min(most_chosen(), 4 * count))};
-        range.lower = count_within(&ErrorRange::lower, range.most);
+        find_counts(count, std::max(least_, std::min(most_chosen(), 4 * count)));
+    }
+
+    /// Leaves nothing after a stop.
+    void find_counts(Index guess, Index most) {
+        CountRange range{{}, {}, most};
+        if (result_.floor.lower <= *target_.limit) {
+            range.lower = count_within(&ErrorRange::lower, guess, most);
+        }
         if (result_.floor.upper <= *target_.limit) {
-            range.upper = count_within(&ErrorRange::upper, range.most);
+            range.upper = count_within(&ErrorRange::upper, guess, most);
         }
         if (!options_.stop.is_set()) result_.counts = range;
     }
 
     /// The least one of up to `most` poses, chosen or planned; nothing after a stop.
-    std::optional<Index> count_within(double ErrorRange::*error, Index most) {
+    std::optional<Index> count_within(double ErrorRange::*error, Index guess, Index most) {
         const auto is_within = [&](const std::optional<ErrorRange>& found) {
             return found && (*found).*error <= *target_.limit;
         };
-        const Index guess = result_.planning->search.pose_count;
         Index count = least_count(guess, least_, most, [&](Index poses) {
             return !options_.stop.is_set() && is_within(choose(poses).error);
         });
@@ -363,11 +379,11 @@ TargetPlanning plan_for_target(const Campaign& campaign, const PlanningOptions& 
     TargetPlanning result;
     result.target = target;
     find_floor(maker.problem(), result);
-    if (target.limit && result.floor.assured > *target.limit) {
-        result.ending = TargetEnding::BelowFloor;
-        return result;
-    }
-    Search(maker, options, result, least + target.robust_to).run();
+    const bool is_below_floor = target.limit && result.floor.assured > *target.limit;
+    if (is_below_floor) result.ending = TargetEnding::BelowFloor;
+    if (is_below_floor && result.floor.lower > *target.limit) return result;
+    Search search(maker, options, result, least + target.robust_to);
+    is_below_floor ? search.look_for_luck() : search.run();
     if (!result.planning) return result;
     maker.add_verification(*result.planning);
     detail::judge_left_out(*result.planning, options);
