@@ -135,9 +135,10 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
                     "Least distance in joint space (Euclidean) of any two planned; random subsets "
                     "are drawn without it")
         ->check(real_number(0, 1e4));
-    command.add_option("--starts", arguments.options.starts, "Starts of each exchange")
-        ->check(whole_number(1, 1000000))
-        ->capture_default_str();
+    command
+        .add_option("--starts", arguments.options.starts,
+                    "Starts of each search (default: 4, of more than 200 candidates 1)")
+        ->check(whole_number(1, 1000000));
     add_effort_option(command, arguments.options.starts, &arguments.proof);
     command.add_option("--seed", arguments.seed, "Of all random choices (default: the campaign's)")
         ->check(whole_number(0, largest_seed));

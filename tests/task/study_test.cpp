@@ -194,7 +194,7 @@ TEST(StudyPoseCounts, RefusesWhatCannotBeStudied) {
     options.pose_counts = {0};
     EXPECT_THROW(study(example.campaign, example.measurements, options), InputError);
     options = small_options();
-    options.starts = 0;
+    options.starts = -1;
     EXPECT_THROW(study(example.campaign, example.measurements, options), InputError);
     const Example too_few(4);
     options = small_options();

@@ -173,7 +173,7 @@ struct StudyOptions {
     std::optional<Index> splits{};
     double holdout = 0.3;       ///< share of the configurations that a split judges on
     double least_distance = 0;  ///< rad, between any two in a planned subset, see PlanRequest
-    Index starts = 4;           ///< for the exchange
+    Index starts = 0;           ///< of the search; 0: 4, of more than 200 candidates 1
     std::optional<std::uint64_t> seed{};  ///< for all draws; nothing: the campaign's
     /// For measured configurations: judges the calibration with all of them, before any case is
     /// run.

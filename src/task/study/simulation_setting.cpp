@@ -135,7 +135,7 @@ void check_simulation(const SimulatedStudyOptions& options) {
     };
     check("trials are", options.trials, 1);
     check("random subsets are", options.random_subsets, 0);
-    check("starts are", options.starts, 1);
+    check("starts are", options.starts, 0);
     check("configurations to choose from are", options.pool_count, 1);
     check("configurations to judge at are", options.test_count, 1);
     check("repeats are", options.repeats, 1);

@@ -46,8 +46,8 @@ std::string describe_undetermined(const Campaign& campaign, const Measurements& 
 }
 
 void check_options(const StudyOptions& options) {
-    if (options.random_subsets < 0 || options.starts < 1) {
-        throw InputError("random subsets and starts must be at least 0 and 1, are " +
+    if (options.random_subsets < 0 || options.starts < 0) {
+        throw InputError("random subsets and starts must not be negative, are " +
                          std::to_string(options.random_subsets) + " and " +
                          std::to_string(options.starts));
     }

@@ -10,10 +10,15 @@ namespace {
 
 constexpr Index few_candidates = 200;
 
-/// Of many candidates two kicks find choices as good as any, for all that calibrating can tell; of
-/// few more are needed, and take no longer.
+/// Of many candidates one start with few kicks finds choices as good as any, for all that
+/// calibrating can tell: their criterion is lower by half a percent in the mean. Of few more are
+/// needed, and take no longer.
 Index kick_count(Index candidates) {
-    return std::clamp<Index>(2000 / candidates, 2, SelectOptions{}.kicks);
+    return std::clamp<Index>(2000 / candidates, 4, SelectOptions{}.kicks);
+}
+Index start_count(Index asked, Index candidates) {
+    if (asked > 0) return asked;
+    return candidates > few_candidates ? 1 : 4;
 }
 
 }  // namespace
@@ -36,7 +41,7 @@ SelectOptions study_selection(const StudyOptions& options, const Campaign& campa
     SelectOptions selection;
     selection.criterion = options.criteria.value()[criterion];
     selection.pose_count = pose_count;
-    selection.starts = options.starts;
+    selection.starts = start_count(options.starts, candidate_count);
     selection.kicks = kick_count(candidate_count);
     if (candidate_count <= few_candidates) {
         selection.proof = 0.01;  // often ends the search
