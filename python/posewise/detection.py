@@ -42,7 +42,8 @@ def detect(
     numbers from 0.
 
     Points are numbered as the campaign's board says; pixels are OpenCV's. An image that shows no board
-    is left out with a :class:`posewise.Doubt`. Needs python3-opencv.
+    is left out with a :class:`posewise.Doubt`. Corners that are seen elsewhere than those around them
+    say are left out. Needs python3-opencv.
     """
     stated = Board.of(board)
     cv2 = opencv("detect a board", aruco=stated.kind != "chessboard")
@@ -59,6 +60,13 @@ def detect(
     found = [
         find(cv2, _grey(cv2, image, name), stated) for image, name in zip(images, names)
     ]
+    seen = [one for one in found if len(one[0]) > 0]
+    found = [_agreeing(cv2, stated, one) for one in found]
+    if seen and not any(len(points) > 0 for points, _ in found):
+        raise InputError(
+            f"`images` show parts of {stated.keys()}, but not where that board has them; must be "
+            "stated as it is printed: columns, rows, sizes"
+        )
     missing = [name for name, (points, _) in zip(names, found) if len(points) == 0]
     if len(missing) == len(names):
         raise InputError(
@@ -105,6 +113,9 @@ def _views(names: list[str], joints: Any, board: BoardLike) -> pd.DataFrame:
                 "campaign"
             )
         joints = pd.DataFrame(board.configurations(joints), columns=board._core.columns)
+    if not joints.columns.is_unique:
+        twice = joints.columns[joints.columns.duplicated()][0]
+        raise InputError(f"`joints` has the column {twice} twice; must have each once")
     if len(joints) != len(names):
         raise InputError(
             f"`joints` has {len(joints)} rows for {len(names)} images; must have one for each"
@@ -121,7 +132,11 @@ def _grey(cv2: Any, image: Image, name: str) -> npt.NDArray[np.uint8]:
     if not isinstance(image, np.ndarray):
         path = check_path(image, "images")
         # As the camera took it: intrinsics are of the image that is not turned.
-        grey = cv2.imread(path, cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION)
+        flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION
+        try:
+            grey = cv2.imread(path, flags)
+        except cv2.error:  # more pixels than OpenCV takes
+            grey = None
         if grey is None:
             raise InputError(f"{path}: cannot be read as an image")
         return np.asarray(grey)
@@ -165,6 +180,8 @@ def _chessboard(cv2: Any, grey: npt.NDArray[np.uint8], board: Board) -> Found:
     scale = np.array(grey.shape[::-1]) / small.shape[::-1]
     seen = (np.asarray(pixels, float) + 0.5) * scale - 0.5  # 0 is the middle of the first pixel
     grid = _upright(grey, seen.reshape(board.rows, board.columns, 2))
+    if _is_of_larger(grey, grid):
+        return _nothing
     steps = [np.linalg.norm(np.diff(grid, axis=axis), axis=2).min() for axis in (0, 1)]
     points = np.arange(len(board.corners))
     return _refined(cv2, grey, points, grid.reshape(-1, 2), 0.4 * float(min(steps)))
@@ -190,6 +207,35 @@ def _begins_black(grey: npt.NDArray[np.uint8], grid: Array) -> bool:
     is_even = np.indices(u.shape).sum(axis=0) % 2 == 0
     shades = grey[v, u].astype(float)
     return bool(is_even.all()) or bool(shades[is_even].mean() < shades[~is_even].mean())
+
+
+def _is_of_larger(grey: npt.NDArray[np.uint8], grid: Array) -> bool:
+    """Whether squares alternate beyond the outer corners, or between corners: these are some of a
+    larger board's."""
+    across = grid.transpose(1, 0, 2)
+    return any(_alternates(grey, one) for one in (grid, grid[::-1], across, across[::-1]))
+
+
+def _alternates(grey: npt.NDArray[np.uint8], grid: Array) -> bool:
+    """Whether squares alternate around most places that are one step before the first row, or half a
+    step behind it."""
+    last = np.array(grey.shape[::-1]) - 1
+    edge, step = grid[0], grid[1] - grid[0]
+    along = np.gradient(edge, axis=0)
+
+    def contrast(places: Array, reach: float) -> Array:
+        """Of two squares that touch at a corner with the other two; none outside the image."""
+        signs = [(a, b) for a in (-reach, reach) for b in (-0.3, 0.3)]
+        around = np.stack([places + a * step + b * along for a, b in signs])
+        u, v = np.moveaxis(np.rint(np.clip(around, 0, last)).astype(int), 2, 0)
+        shades = grey[v, u].astype(float)
+        is_inside = ((around >= 0) & (around <= last)).all(axis=(0, 2))
+        return np.asarray(np.abs(shades[0] - shades[1] - shades[2] + shades[3]) * is_inside)
+
+    # Where the board ends two of the four are alike, which is half of the contrast.
+    least = 0.75 * np.median(contrast(edge, 0.3))
+    beyond, between = contrast(edge - step, 0.3), contrast(edge + step / 2, 0.15)
+    return any(np.sum(one > least) > len(edge) / 2 for one in (beyond, between))
 
 
 def _markers(
@@ -274,6 +320,44 @@ def _near_markers(
     side = float(np.linalg.norm(np.diff(seen, axis=1), axis=2).min())
     reach = 0.7 * clear * side / board.marker
     return _refined(cv2, grey, found, np.array(pixels), reach)
+
+
+def _agreeing(cv2: Any, board: Board, found: Found) -> Found:
+    """The corners that are seen where those around them say, on a plane; none where too few are, so
+    that the board is another one."""
+    points, pixels = found
+    # Of a chessboard all are found together, of markers each by itself.
+    fewest = (0.9 if board.kind == "chessboard" else 0.5) * len(points)
+    places = board.corners[points]
+    kept = list(range(len(points)))
+    worst = _out_of_line(cv2, board, places, pixels)
+    while worst is not None and len(kept) >= fewest:
+        del kept[worst]
+        worst = _out_of_line(cv2, board, places[kept], pixels[kept])
+    if len(kept) < fewest:
+        return _nothing
+    return points[kept], pixels[kept]
+
+
+def _out_of_line(cv2: Any, board: Board, places: Array, pixels: Array) -> int | None:
+    """The corner that is farthest from where those around it say, if that is too far."""
+    most, least = 20, 8  # of those around; fewer do not tell
+    if len(places) <= least:
+        return None
+    steps = np.array([[0, 0], [board.pitch[0], 0], [0, board.pitch[1]]])
+    off = np.zeros(len(places))
+    for k, place in enumerate(places):
+        order = np.argsort(np.linalg.norm(places - place, axis=1), kind="stable")
+        near = order[1 : most + 1]
+        H, _ = cv2.findHomography(places[near], pixels[near])
+        if H is None:
+            continue
+        here, along, down = _mapped(cv2, place + steps, H)
+        step = float(np.linalg.norm(along - here) + np.linalg.norm(down - here)) / 2
+        # A lens bends so small a part of the board by less.
+        off[k] = float(np.linalg.norm(pixels[k] - here)) / max(1.0, 0.03 * step)
+    worst = int(np.argmax(off))
+    return worst if off[worst] > 1 else None
 
 
 def _mapped(cv2: Any, places: Array, homography: Array) -> Array:

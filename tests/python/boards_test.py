@@ -241,6 +241,52 @@ def test_images_without_a_board_are_named(cv2, tmp_path):
             pw.detect([empty], board)
 
 
+@pytest.mark.parametrize(
+    ("printed", "stated"),
+    [
+        (charuco, {"columns": 7, "rows": 5}),
+        (charuco, {"columns": 4}),
+        (charuco, {"marker_mm": 15}),
+        (aprilgrid, {"columns": 6, "rows": 6}),
+        (aprilgrid, {"spacing": 0.2}),
+    ],
+    ids=lambda one: "-".join(f"{key}_{one[key]}" for key in one),
+)
+def test_a_board_of_another_layout_is_refused(cv2, tmp_path, printed, stated):
+    page = Printed(printed, tmp_path)
+    image = page.seen(cv2, view(page, 20, 10, 15, 620))
+    with pytest.raises(pw.InputError, match="images` show parts of .*, but not where that board"):
+        pw.detect([image], {**printed, **stated})
+
+
+@pytest.mark.parametrize("size", [(6, 4), (9, 3), (8, 3), (5, 6)], ids=str)
+def test_a_part_of_a_larger_chessboard_is_no_board(cv2, tmp_path, size):
+    page = Printed({"columns": 9, "rows": 6, "square_mm": 25}, tmp_path)
+    image = page.seen(cv2, view(page, 20, 10, 5, 520))
+    smaller = {"columns": size[0], "rows": size[1], "square_mm": 25}
+    with pytest.raises(pw.InputError, match="images` show no board.*counts inner corners"):
+        pw.detect([image], smaller)
+
+
+def test_a_corner_that_is_seen_elsewhere_is_left_out(cv2, tmp_path, monkeypatch):
+    """As that of a marker whose outline was found wrong."""
+    printed = Printed(aprilgrid, tmp_path)
+    H = view(printed, 0, 30, -120, 620)
+    refine = pw.detection._refined
+    lost = set()
+
+    def spoilt(cv2, grey, points, pixels, reach):
+        found, refined = refine(cv2, grey, points, pixels, reach)
+        refined[[3, 10, 11]] += [[9, -4], [6, 6], [6, 6]]
+        lost.update(found[[3, 10, 11]])
+        return found, refined
+
+    monkeypatch.setattr(pw.detection, "_refined", spoilt)
+    found = pw.detect([printed.seen(cv2, H)], aprilgrid)
+    check(printed, found, H, 0, len(printed.corners) - 3)
+    assert not lost & set(found["point"])
+
+
 camera_campaign = {
     "name": "two joints",
     "robot": {
@@ -284,6 +330,8 @@ def test_joints_and_camera_stand_beside_the_corners(cv2, tmp_path):
         ([np.zeros((9, 9), np.uint8)], camera_campaign, {"camera": 3}, "`camera` is 3"),
         ([np.zeros((9, 9), np.uint8)], camera_campaign, {}, "needs `camera`, 1 to 2"),
         ([np.zeros((9, 9), np.uint8)], charuco, {"joints": pd.DataFrame({"q": [1, 2]})}, "2 rows for 1"),
+        ([np.zeros((9, 9), np.uint8)], charuco,
+         {"joints": pd.DataFrame([[1, 2]], columns=["q", "q"])}, "`joints` has the column q twice"),
         ([], 3, {}, "`board` is 3; must be a Campaign"),
         ([], {**charuco, "columns": 1}, {}, "`board`.columns is 1; must be from 3"),
         ([], {"points_mm": [[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 0]]}, {}, "no pattern"),
