@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._calls import Array, InputError, shortened
-from ._files import check_path, write_file
+from ._files import check_path, read_text, write_file
 from .campaign import Campaign
 
 #: A campaign whose instrument is a camera, or the keys of its section ``board``.
@@ -127,7 +127,7 @@ class Board:
             stated["legacy"] = "true"
         stated["first_point"] = self.first_point
         values = {
-            key: f"{value:.9g}" if isinstance(value, float) else value
+            key: f"{value:.12g}" if isinstance(value, float) else value
             for key, value in stated.items()
         }
         return "{" + ", ".join(f"{key}: {value}" for key, value in values.items()) + "}"
@@ -208,7 +208,8 @@ def draw_board(board: BoardLike, path: str | os.PathLike[str]) -> None:
     (``{"kind": "charuco", "columns": 5, "rows": 7, "square_mm": 30, "marker_mm": 22}``; chessboard,
     charuco or aprilgrid). board.yaml, beside board.svg, is what a campaign names:
     ``board: {file: board.yaml}``. Print without fitting to the page; the bar below the board must
-    be 100 mm long. Markers come from python3-opencv.
+    be 100 mm long. Markers come from python3-opencv. A board.yaml that is another file's is not
+    replaced.
     """
     stated = Board.of(board)
     if abs(np.diff(stated.pitch)[0]) > 1e-9:
@@ -216,6 +217,8 @@ def draw_board(board: BoardLike, path: str | os.PathLike[str]) -> None:
     target = Path(check_path(path, "path"))
     if target.suffix != ".svg":
         raise InputError(f"`path` is {shortened(str(path))}; must end in .svg")
+    description = target.with_suffix(".yaml")
+    _check_may_be_replaced(description)
     black = np.array([one for piece in _pieces(stated) for one in piece.rectangles()])
     bar = 100.0
     margin = max(10.0, _mm * float(stated.pitch[0] - (stated.kind == "aprilgrid") * stated.marker))
@@ -243,5 +246,18 @@ def draw_board(board: BoardLike, path: str | os.PathLike[str]) -> None:
         "</svg>\n",
     ]
     write_file(target, "\n".join(lines).encode())
-    description = f"# {target.name}, printed at 100 %: its bar is 100 mm long.\nboard: {stated.keys()}\n"
-    write_file(target.with_suffix(".yaml"), description.encode())
+    write_file(description, f"{_remark}\nboard: {stated.keys()}\n".encode())
+
+
+_remark = "# Printed at 100 %: the bar below the board is 100 mm long."
+
+
+def _check_may_be_replaced(description: Path) -> None:
+    """Whether nothing is there, or what draw_board() wrote."""
+    if os.path.exists(description):  # of a name that is too long nothing is
+        lines = read_text(description, "a board's description").splitlines()
+        if len(lines) != 2 or lines[0] != _remark or not lines[1].startswith("board: {"):
+            raise InputError(
+                f"{description}: is not what draw_board() writes beside {description.stem}.svg; must "
+                "be elsewhere, or the drawing have another name"
+            )

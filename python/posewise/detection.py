@@ -21,6 +21,7 @@ Image = Union[str, "os.PathLike[str]", npt.NDArray[np.uint8]]
 #: Numbers of corners from 0, and where they are seen, (corners, 2) in px.
 Found = tuple[npt.NDArray[np.int64], Array]
 most_cameras = 17  # of a campaign
+least_reach = 2  # px around a corner
 
 
 def detect(
@@ -47,8 +48,8 @@ def detect(
     """
     stated = Board.of(board)
     cv2 = opencv("detect a board", aruco=stated.kind != "chessboard")
-    is_list = not isinstance(images, (str, bytes, os.PathLike)) and hasattr(images, "__len__")
-    if not is_list or len(images) == 0:
+    is_list = isinstance(images, (Sequence, np.ndarray, pd.Series))
+    if not is_list or isinstance(images, (str, bytes)) or len(images) == 0:
         raise InputError(f"`images` is {shortened(images)}; must be a list of paths or arrays")
     known = stated.cameras if isinstance(board, Campaign) else most_cameras
     check_number("camera", camera, 1, known, whole=True)
@@ -56,10 +57,20 @@ def detect(
         raise InputError(f"detect(): needs `camera`, 1 to {stated.cameras}: the one of these images")
     names = _names(images)
     views = _views(names, joints, board)
+    taken = {"point", "u_px", "v_px"} | ({"camera"} if camera is not None else set())
+    for column in views.columns:
+        if column in taken:
+            raise InputError(f"`joints` has a column {column}, which detect() finds; must be left out")
     find = {"chessboard": _chessboard, "charuco": _charuco, "aprilgrid": _aprilgrid}[stated.kind]
-    found = [
-        find(cv2, _grey(cv2, image, name), stated) for image, name in zip(images, names)
-    ]
+    found = []
+    for image, name in zip(images, names):
+        grey = _grey(cv2, image, name)
+        try:
+            found.append(find(cv2, grey, stated))
+        except cv2.error as error:
+            raise InputError(
+                f"OpenCV cannot look for the board in image {name}: {error.err}"
+            ) from None
     seen = [one for one in found if len(one[0]) > 0]
     found = [_agreeing(cv2, stated, one) for one in found]
     if seen and not any(len(points) > 0 for points, _ in found):
@@ -140,7 +151,7 @@ def _grey(cv2: Any, image: Image, name: str) -> npt.NDArray[np.uint8]:
         if grey is None:
             raise InputError(f"{path}: cannot be read as an image")
         return np.asarray(grey)
-    if image.dtype != np.uint8 or not (image.ndim == 2 or (image.ndim == 3 and image.shape[2] == 3)):
+    if image.size == 0 or image.dtype != np.uint8 or not (image.ndim == 2 or (image.ndim == 3 and image.shape[2] == 3)):
         raise InputError(
             f"`images` has an array {image.shape} of {image.dtype}, image {name}; must be uint8, "
             "(height, width) or (height, width, 3)"
@@ -158,7 +169,7 @@ def _refined(
 ) -> Found:
     """Corners to parts of a pixel, by the gradients around each: in a square of that half side, px,
     which no other edge must cross. Without those whose square is not in the image."""
-    half = int(np.clip(reach, 2, 15))
+    half = int(np.clip(reach, least_reach, 15))
     last = np.array(grey.shape[::-1]) - 1
     is_inside = ((pixels > half + 1) & (pixels < last - half - 1)).all(axis=1)
     if not is_inside.any():
@@ -319,6 +330,11 @@ def _near_markers(
         return _nothing
     side = float(np.linalg.norm(np.diff(seen, axis=1), axis=2).min())
     reach = 0.7 * clear * side / board.marker
+    if reach < least_reach:
+        warn([
+            "in some images markers are so close to the corners beside them that these may be off by "
+            "pixels: markers of at most 0.9 of their squares, or nearer images, are better"
+        ])
     return _refined(cv2, grey, found, np.array(pixels), reach)
 
 

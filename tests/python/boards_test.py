@@ -326,6 +326,11 @@ def test_joints_and_camera_stand_beside_the_corners(cv2, tmp_path):
         (["none.png"], charuco, {}, "none.png: cannot be read as an image"),
         ([np.zeros((9, 9))], charuco, {}, "must be uint8"),
         ([np.zeros((9, 9, 4), np.uint8)], charuco, {}, "must be uint8"),
+        ([np.zeros((0, 5), np.uint8)], charuco, {}, "array (0, 5) of uint8"),
+        ([np.zeros((1, 2000000), np.uint8)], chessboard, {}, "OpenCV cannot look for the board in image 0"),
+        ({"a.png"}, charuco, {}, "must be a list of paths"),
+        ([np.zeros((9, 9), np.uint8)], charuco,
+         {"camera": 2, "joints": pd.DataFrame({"q1_deg": [1.0], "camera": [1]})}, "has a column camera"),
         ([np.zeros((9, 9), np.uint8)], charuco, {"joints": [[1, 2]]}, "`joints` is no DataFrame"),
         ([np.zeros((9, 9), np.uint8)], camera_campaign, {"camera": 3}, "`camera` is 3"),
         ([np.zeros((9, 9), np.uint8)], camera_campaign, {}, "needs `camera`, 1 to 2"),
@@ -390,6 +395,25 @@ def test_a_campaign_takes_the_description(tmp_path, board):
 def test_what_cannot_be_drawn_is_said(tmp_path, board, name, words):
     with pytest.raises(pw.InputError, match=re.escape(words)):
         pw.draw_board(board, tmp_path / name)
+
+
+def test_nothing_but_a_description_is_replaced(tmp_path):
+    campaign = tmp_path / "board.yaml"
+    campaign.write_text((designs / "camera" / "campaign.yaml").read_text())
+    before = campaign.read_text()
+    with pytest.raises(pw.InputError, match="board.yaml: is not what draw_board.. writes"):
+        pw.draw_board(pw.Campaign.from_yaml(campaign), tmp_path / "board.svg")
+    assert campaign.read_text() == before
+    assert not (tmp_path / "board.svg").exists()
+    (tmp_path / "folder.yaml").mkdir()
+    with pytest.raises(pw.InputError, match="folder.yaml: cannot be read"):
+        pw.draw_board(chessboard, tmp_path / "folder.svg")
+    assert not (tmp_path / "folder.svg").exists()
+    for side in (25, 24.9999999999):
+        pw.draw_board({**chessboard, "square_mm": side}, tmp_path / "again.svg")
+    assert "square_mm: 24.9999999999" in (tmp_path / "again.yaml").read_text()
+    with pytest.raises(pw.InputError, match="cannot be written"):
+        pw.draw_board(chessboard, tmp_path / ("a" * 300 + ".svg"))
 
 
 def test_squares_of_two_sides_are_not_drawn(tmp_path):
