@@ -102,7 +102,8 @@ class Search {
     /// What no number of poses keeps with the assurance asked for, some may keep with less.
     void look_for_luck() {
         if (least_ > most_chosen()) return;
-        find_counts(least_, std::min(most_chosen(), many));
+        const bool is_tried = result_.ending == TargetEnding::TooManyPoses;
+        find_counts(least_, is_tried ? most_chosen() : std::min(most_chosen(), many));
         fill_curve();
     }
 
