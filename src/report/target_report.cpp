@@ -130,6 +130,14 @@ std::string describe_best(const TargetPlanning& found, double longest) {
                        format_mm(best->error->assured));
 }
 
+/// The fewest poses that keep the limit; nullptr: none that were looked at.
+const CountPrediction* first_within(const TargetPlanning& found) {
+    for (const CountPrediction& one : found.curve) {
+        if (one.error && one.error->assured <= *found.target.limit) return &one;
+    }
+    return nullptr;
+}
+
 /// What narrows a number that may be off by more than a factor of 2.
 std::string describe_narrowing(const TargetPlanning& found) {
     const Planning& planning = *found.planning;
@@ -248,6 +256,13 @@ std::string describe_shortfall(const TargetPlanning& found) {
             return fmt::format("{}: unattainable: {}; {}{}", describe_limit(target), floor,
                                describe_luck(found), describe_remedy(found));
         case TargetEnding::TooManyPoses:
+            if (const CountPrediction* const enough = first_within(found)) {
+                return fmt::format(
+                    "{}: about {} would do, as chosen from the pool; so many are planned when they "
+                    "are asked for, --poses {}; {}; {}a larger limit takes fewer",
+                    describe_limit(target), count_of(enough->pose_count, "new pose"),
+                    enough->pose_count, floor, describe_luck(found));
+            }
             return fmt::format(
                 "{}: not reached: {}; {}; {}more may be stated (--poses-at-most, --pool)",
                 describe_limit(target),

@@ -121,10 +121,12 @@ struct CountRange {
 /// How a search for the number of poses ended.
 enum class TargetEnding {
     NotRun,
-    Reached,       ///< the plan keeps the limit, one with fewer poses does not; or as many as fit
-    BelowFloor,    ///< no number of poses keeps the limit
-    TooManyPoses,  ///< neither TargetOptions::most_poses nor the pool suffices
-    TooLong,       ///< what keeps the limit takes longer than there is time
+    Reached,     ///< the plan keeps the limit, one with fewer poses does not; or as many as fit
+    BelowFloor,  ///< no number of poses keeps the limit
+    /// Neither TargetOptions::most_poses nor the pool suffices; or more than 200 poses are needed,
+    /// whose plans take minutes each: the curve says about how many.
+    TooManyPoses,
+    TooLong,  ///< what keeps the limit takes longer than there is time
 };
 
 /// A plan with as many poses as a target needs.

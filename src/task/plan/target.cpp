@@ -86,7 +86,7 @@ class Search {
                 least_, most_chosen()));
         }
         const Index by_choices = count_by_choices();
-        if (has_limit() && by_choices > most_chosen() && most_chosen() > many) {
+        if (has_limit() && by_choices > many) {
             result_.ending = TargetEnding::TooManyPoses;
             return look_for_luck();
         }
@@ -108,7 +108,7 @@ class Search {
     }
 
   private:
-    /// Plans of more take long, and tell hardly more than choices.
+    /// Plans of more take minutes each, and tell hardly more than choices.
     static constexpr Index many = 200;
 
     bool has_limit() const { return target_.limit.has_value(); }
