@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "io/format/atomic_file.hpp"
+#include "posewise/io/program_targets.hpp"
 #include "posewise/io/robot_programs.hpp"
 #include "program_examples.hpp"
 #include "support/temporary_folder.hpp"
@@ -83,7 +84,8 @@ TEST(EditedPrograms, AreRefusedWhereTheyDoNotStop) {
     expect_refused(Edited(ProgramFormat::Fanuc).replace("J P[2] 20% FINE", "J P[2] 20% CNT50"),
                    "CELL.LS:12:6: does not stop");
     expect_refused(Edited(ProgramFormat::Fanuc).replace("J P[2]", "L P[2]"), "is no joint move");
-    expect_refused(Edited(ProgramFormat::Fanuc).replace("J P[2]", "J P[22]"), "without joints");
+    expect_refused(Edited(ProgramFormat::Fanuc).replace("J P[2]", "J P[22]"),
+                   "moves to P[22], which is not under /POS");
     expect_refused(Edited(ProgramFormat::Fanuc).replace("/POS", "/NOPOS"), "has no /POS");
     expect_refused(Edited(ProgramFormat::Fanuc).replace("J1= ", "J1= x"), "is not a number");
     expect_refused(Edited(ProgramFormat::Kuka).replace("}\nWAIT", "} C_PTP\nWAIT"),
@@ -134,6 +136,50 @@ TEST(EditedPrograms, AreRefusedWhereTheyAreSpoilt) {
     expect_refused(Edited(ProgramFormat::Yaskawa).replace("MOVJ", "MOJV"), slip);
     expect_refused(
         Edited(ProgramFormat::Staubli).replace("movej(joints", "mvej(joints", "/start.pgx"), slip);
+}
+
+/// Where the joint values of one move are spoilt, no command passes it over: a correction refuses
+/// the program or names the line, and reading refuses it.
+TEST(EditedPrograms, HaveNoSpoiltTargetThatIsPassedOver) {
+    using enum ProgramFormat;
+    const std::string opens = "that nothing opens; must be opened";
+    const std::string numbers = "is no joint move to numbers";
+    struct Case {
+        ProgramFormat format;
+        std::string what, by;
+        std::string words;  ///< of program --read
+        long line = 0;  ///< that the correction names; 0: it refuses in these words, -1: in others
+    };
+    for (const auto& [format, what, by, words, line] : std::vector<Case>{
+             {Abb, "MoveAbsJ [[", "MoveAbsJ [", numbers, -1},
+             {Abb, "MoveAbsJ [[", "MoveAbsJ ([", numbers, -1},
+             {Abb, "tool0;", "tool0);", opens},
+             {Ur, "movej([", "movej[", opens},
+             {Ur, "movej([", "movej(", opens},
+             {Ur, "movej([0.000000, -2.094395, 2.094395, 0.000000, 0.000000, 0.000000]",
+              "movej(0, -2, 2, 0, 0, 0", numbers, 4},
+             {Ur, "movej([", "servoj([", "is no joint move", 4},
+             {Kuka, "PTP {A1", "PTP A1", opens},
+             {Kuka, "PTP {A1", "PTP {A-", "where A1 must be", 10},
+             {Kuka, "PTP {A1", "PTP {A+5", "where A1 must be", 10},
+             {Kuka, "PTP {A1 ", "PTP {A.5", "where A1 must be", 10},
+             {Kuka, "PTP {A1", "PTP {A1 x,A1", "is not a number", 10},
+             {Fanuc, "J P[2]", "J P[99]", "moves to P[99], which is not under /POS"},
+             {Fanuc, "P[2]{", "P[3]{", "states a position twice"},
+             {Fanuc, "20%", "-20%", "has '-20%'; must not be below 0"},
+             {Fanuc, "J6=", "J5=", "has J5 where J6 must be", -1},
+             {Fanuc, "J2=", "J1=", "has J1 where J2 must be", -1}}) {
+        Edited edited(format);
+        expect_refused(edited.replace(what, by), words);
+        std::vector<long> others;
+        const std::string error = input_error_of([&] {
+            others =
+                read_program_targets(edited.path(), format, edited.campaign().controller).others;
+        });
+        EXPECT_EQ(others, line > 0 ? std::vector<long>{line} : std::vector<long>{}) << by;
+        EXPECT_EQ(error == "no error", line > 0) << by << ' ' << error;
+        EXPECT_TRUE(line != 0 || error.find(words) != std::string::npos) << by << ' ' << error;
+    }
 }
 
 /// The example's poses as a plan, v1 to verify.

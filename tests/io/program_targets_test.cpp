@@ -237,6 +237,33 @@ TEST(ProgramTargets, ThatAreNoNumbersAreNamed) {
     EXPECT_EQ(abb.others, std::vector<long>{3});
 }
 
+/// Numbers of a target without what makes them one, in moves and declarations; and what has as many
+/// numbers, but is none.
+TEST(ProgramTargets, WhoseBracketsAreLostAreNamed) {
+    const auto others = [](ProgramFormat format, const std::string& text) {
+        return Written(format, text).read().others;
+    };
+    const std::string axes = "A1 1,A2 2,A3 3,A4 4,A5 5,A6 6";
+    EXPECT_EQ(others(ProgramFormat::Kuka, "DEF a()\nPTP {" + axes + "}\nDECL E6AXIS X1=" + axes +
+                                              "}\nptp " + axes + "\nSPTP {A1 1,A2 2}\n" +
+                                              "WEIGH(1,2,3,4,5,6)\nPTP X1 C_PTP\nEND\n"),
+              (std::vector<long>{3, 4, 5}));
+    const std::string external = "[9E9,9E9,9E9,9E9,9E9,9E9]";
+    const std::string move = "MoveAbsJ [[1,2,3,4,5,6]," + external + "],v1,fine,t;";
+    EXPECT_EQ(
+        others(ProgramFormat::Abb,
+               "MODULE m\nCONST jointtarget a:=[1,2,3,4,5,6]," + external + "];\n" + move +
+                   " MoveAbsJ [1,2,3,4,5,6]," + external + ",v1,fine,t;\nCONST jointtarget b:=\n[" +
+                   "1,2,3,4,5,6];\nweigh 1,2,3,4,5,6;\nMoveJ RelTool(p1,0,0,5\\Rz:=25),v1,z1,t;" +
+                   "\nENDMODULE\n"),
+        (std::vector<long>{2, 3, 5}));
+    EXPECT_EQ(others(ProgramFormat::Ur,
+                     "a = [0, 1, 2, 0, 0, 0]\nb = 0, 1, 2, 0, 0, 0\nc = [0, 1, 2, 0, 0, 0]\n"
+                     "movej(a, 1.4, 1.05, 0, 0)\nmovej(b)\nif x: movej(0, 1, 2, 0, 0, 0)\nend\n"
+                     "servoj(c, 0, 0, 0.002, 0.1)\nservoj(a)\nspeedj([0, 1, 2, 0, 0, 0], 1, 1)\n"),
+              (std::vector<long>{2, 3, 6}));
+}
+
 /// What program --read refuses as spoilt, in programs whose moves it would not take either.
 TEST(ProgramTargets, OfSpoiltStatementsAreRefused) {
     const auto expect = [](ProgramFormat format, const std::string& text,
@@ -286,7 +313,9 @@ TEST(ProgramTargets, OfSpoiltStatementsAreRefused) {
     };
     expect(ProgramFormat::Fanuc, fanuc("K P[1] 10% FINE"), "CELL.LS:4:6: has ' P['");
     expect(ProgramFormat::Fanuc, fanuc("L P[x] 10% FINE"), "names no position");
-    EXPECT_EQ(Written(ProgramFormat::Fanuc, fanuc("C P[1]\n    :  P[2] 9mm/sec FINE")).error(),
+    expect(ProgramFormat::Fanuc, fanuc("C P[1]\n    :  P[2] 9mm/sec FINE"), "moves to P[2], which");
+    expect(ProgramFormat::Fanuc, fanuc("L P[1:a] -9mm/sec FINE"), "has '-9mm/sec'; must not be");
+    EXPECT_EQ(Written(ProgramFormat::Fanuc, fanuc("C P[1]\n    :  P[1] 9mm/sec FINE")).error(),
               "no error");
 }
 

@@ -87,7 +87,7 @@ std::vector<TextLine> abb_statements(const TextLine& line) {
 }
 
 void check_abb(const TextLine& line) {
-    constexpr std::string_view moves = "MoveAbsJ MoveAbsJDO MoveAbsJAO MoveAbsJGO TriggAbsJ";
+    const std::string_view moves = abb_program().rules.moves;
     for (const TextLine& statement : abb_statements(line)) {
         if (statement.begins_with("!")) continue;
         check_target(abb_program().rules, statement, moves);
@@ -168,6 +168,7 @@ const ProgramKind& abb_program() {
                   .modifiers = "LOCAL TASK"},
          .waits = "WaitTime WaitDI WaitUntil Stop Break",
          .messages = "TPWrite",
+         .moves = "MoveAbsJ MoveAbsJDO MoveAbsJAO MoveAbsJGO TriggAbsJ",
          .target = "[[",
          .target_numbers = 6},
         &abb_files,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <set>
 
 #include "core/text.hpp"
 #include "io/format/text.hpp"
@@ -89,6 +90,10 @@ void read_fanuc_axes(const TextLine& line, bool is_first_group, std::vector<doub
                                          quote(std::string(trim(rest.substr(0, end)))), name));
         }
         const double value = values.front();
+        const std::string wanted = fmt::format("J{}", joints.size() + 1);
+        if (is_joint && name != wanted) {
+            throw line.error(fmt::format("has {} where {} must be", name, wanted));
+        }
         if (is_joint) joints.push_back(value);
         if (is_other && value != 0) {
             throw line.error(
@@ -111,7 +116,6 @@ std::map<std::size_t, std::vector<double>> read_fanuc_positions(const std::vecto
         if (line.begins_with("/END")) break;
         if (line.begins_with("P[")) {
             joints = &positions[read_fanuc_index(line, line.text.substr(2))];
-            if (!joints->empty()) throw line.error("states a position twice");
             is_first_group = true;
         } else if (line.begins_with("GP")) {
             is_first_group = line.begins_with("GP1");
@@ -135,17 +139,49 @@ TextLine fanuc_statement(TextLine line) {
     return line;
 }
 
+/// The number of the position that a move, or the line that goes on with it, leads to; 0: none.
+std::size_t fanuc_move_index(const TextLine& statement) {
+    const std::string_view word = first_word(statement.text);
+    const std::string_view rest =
+        word == "P" ? statement.text : trim(statement.text.substr(word.size()));
+    if ((word != "P" && !is_word(word, fanuc_program().rules.moves)) || !rest.starts_with("P["))
+        return 0;
+    return read_fanuc_index(statement, rest.substr(2));
+}
+
 void check_fanuc(const TextLine& line) {
     const TextLine statement = fanuc_statement(line);
     for (const char* const comment : {"!", "//", "--"}) {
         if (statement.begins_with(comment)) return;
     }
-    constexpr std::string_view moves = "J L C A S";
-    check_target(fanuc_program().rules, statement, moves);
-    const std::string_view word = first_word(statement.text);
-    const std::string_view rest = trim(statement.text.substr(word.size()));
-    if (is_word(word, moves) && rest.starts_with("P[")) {
-        read_fanuc_index(statement, rest.substr(2));
+    check_target(fanuc_program().rules, statement, fanuc_program().rules.moves);
+    if (fanuc_move_index(statement) == 0) return;
+    const std::string_view text = statement.text;
+    const std::string_view speed = trim(text.substr(text.find(']') + 1));
+    if (!speed.starts_with('-')) return;
+    throw statement.error(fmt::format("has {}; must not be below 0",
+                                      quote(speed.substr(0, speed.find_first_of(" \t")))));
+}
+
+/// Throws InputError where a position is stated twice, or a move's nowhere.
+void check_fanuc_positions(const std::vector<TextLine>& lines) {
+    const auto begins = [](std::string_view word) {
+        return [word](const TextLine& line) { return line.begins_with(word); };
+    };
+    const auto moves = std::ranges::find_if(lines, begins("/MN"));
+    const auto positions = std::find_if(moves, lines.end(), begins("/POS"));
+    std::set<std::size_t> stated;
+    for (auto line = positions; line != lines.end() && !line->begins_with("/END"); ++line) {
+        if (!line->begins_with("P[")) continue;
+        if (stated.insert(read_fanuc_index(*line, line->text.substr(2))).second) continue;
+        throw line->error("states a position twice");
+    }
+    for (auto line = moves; line != positions; ++line) {
+        const TextLine statement = fanuc_statement(*line);
+        const std::size_t index = fanuc_move_index(statement);
+        if (index == 0 || stated.contains(index)) continue;
+        throw statement.error(
+            fmt::format("moves to P[{}], which is not under /POS; must be there", index));
     }
 }
 
@@ -201,6 +237,7 @@ std::vector<io::ProgramStop> read_fanuc(const std::string& path, const Controlle
     };
     const std::size_t end = section("/POS") - 1;
     section("/END");
+    check_fanuc_positions(lines);
     const auto positions = read_fanuc_positions(lines, end + 1);
     StopCollector stops(fanuc_program().rules, joints);
     for (std::size_t k = section("/MN"); k < end; ++k) {
@@ -237,10 +274,12 @@ const ProgramKind& fanuc_program() {
                                             .jumps = "JMP TIMEOUT",
                                             .leaves = "END ABORT"},
                                    .waits = "WAIT PAUSE CALL",
+                                   .moves = "J L C A S",
                                    .target = " P["},
                                   &fanuc_files,
                                   &read_fanuc,
-                                  &check_fanuc};
+                                  &check_fanuc,
+                                  &check_fanuc_positions};
     return kind;
 }
 

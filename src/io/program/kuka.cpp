@@ -123,8 +123,8 @@ TextLine without_comment(TextLine line) {
 }
 
 void check_kuka(const TextLine& line) {
-    constexpr std::string_view moves = "PTP PTP_REL SPTP SPTP_REL LIN LIN_REL SLIN CIRC SCIRC SPL";
     const TextLine statement = without_comment(line);
+    const std::string_view moves = kuka_program().rules.moves;
     check_target(kuka_program().rules, statement, moves);
     if (is_word(first_word(statement.text), moves)) check_brackets(statement);
 }
@@ -218,6 +218,7 @@ const ProgramKind& kuka_program() {
                   .leaves = "RETURN",
                   .modifiers = "GLOBAL"},
          .waits = "WAIT HALT",
+         .moves = "PTP PTP_REL SPTP SPTP_REL LIN LIN_REL SLIN CIRC SCIRC SPL",
          .target = "{A1",
          .target_numbers = 6},
         &kuka_files,

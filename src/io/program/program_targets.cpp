@@ -139,6 +139,8 @@ class TargetReader {
         });
     }
 
+    void leave_unread(const std::string& text, char end,
+                      const std::function<bool(std::string_view)>& is_of_target);
     std::set<std::string> fanuc_added_positions() const;
     bool read_fanuc_place(std::size_t begin, std::string_view text, const std::string& number);
     void read_kuka_aggregate(const std::string& text, std::size_t at);
@@ -274,6 +276,42 @@ void TargetReader::check_end(const std::string& text, const std::set<std::string
     throw input_error_at({path_}, "has no " + end + " at its end; must be the whole program");
 }
 
+/// How many of what commas separate end in a number, brackets aside: "a:=[[0,A2 -90,3]" has two.
+std::size_t count_listed_numbers(std::string_view text) {
+    std::size_t count = 0;
+    while (!text.empty()) {
+        const std::size_t comma = std::min(text.find(','), text.size());
+        std::string_view one = text.substr(0, comma);
+        text.remove_prefix(std::min(comma + 1, text.size()));
+        one = one.substr(0, one.find_last_not_of("()[]{} \t\r\n") + 1);
+        const std::size_t before = one.find_last_of("()[]{} \t\r\n");
+        if (before != one.npos) one.remove_prefix(before + 1);
+        if (detail::parse_number(one).ok()) ++count;
+    }
+    return count;
+}
+
+/// Leaves the statements of a target in whose numbers nothing was found, as something else in them
+/// is spoilt. One of the numbers may be, too.
+void TargetReader::leave_unread(const std::string& text, char end,
+                                const std::function<bool(std::string_view)>& is_of_target) {
+    std::set<std::size_t> found;
+    for (const JointTarget& target : program_.targets) found.insert(target.values[0].begin);
+    for (const PlaceTarget& target : program_.places) found.insert(target.values[0].begin);
+    const std::set<long> left(program_.others.begin(), program_.others.end());
+    for (std::size_t begin = 0, next = 0; begin < text.size(); begin = next + 1) {
+        next = std::min(text.find(end, begin), text.size());
+        begin = std::min(text.find_first_not_of(" \t\r\n", begin), next);
+        const std::string_view statement = std::string_view(text).substr(begin, next - begin);
+        if (count_listed_numbers(statement) + 1 < count() || !is_of_target(statement)) continue;
+        const auto target = found.lower_bound(begin);
+        const std::size_t numbers = begin + statement.find(',');
+        const auto line = left.lower_bound(place(numbers).line);
+        const bool is_found = target != found.end() && *target < next;
+        if (!is_found && (line == left.end() || *line > place(next).line)) leave(numbers);
+    }
+}
+
 // ---- KUKA ----
 
 /// The numbers of an aggregate, "{E6POS: X 1.0,...}".
@@ -343,6 +381,11 @@ void TargetReader::read_kuka() {
     for (std::size_t at = text.find('{'); at != std::string::npos; at = text.find('{', at + 1)) {
         read_kuka_aggregate(text, at);
     }
+    leave_unread(text, '\n', [this](std::string_view statement) {
+        const std::string line = lower_case(std::string(statement));
+        const bool is_declared = line.find("axis ") != line.npos || line.find("pos ") != line.npos;
+        return is_declared || detail::is_word(Cursor(line, 0).word(), rules_.moves);
+    });
 }
 
 // ---- ABB ----
@@ -372,10 +415,8 @@ bool TargetReader::read_abb_robtarget(const std::string& text, std::size_t at) {
 }
 
 /// Whether a declaration of a target or a move is what states it, whatever stands there.
-bool is_abb_target(const std::string& text, std::size_t at) {
-    const std::size_t begin = text.find_last_of(";\n", at);
-    const std::string before =
-        lower_case(text.substr(begin == std::string::npos ? 0 : begin, at - begin));
+bool is_abb_target(std::string_view text) {
+    const std::string before = lower_case(std::string(text));
     return before.find("jointtarget") != std::string::npos ||
            before.find("robtarget") != std::string::npos ||
            before.find("move") != std::string::npos;
@@ -388,13 +429,16 @@ void TargetReader::read_abb() {
         Cursor joints(text, at + 1);
         if (!joints.take('[')) continue;
         const std::size_t inner = joints.at();
+        const std::size_t begin = text.find_last_of(";\n", at) + 1;
         const auto spans = joints.numbers(count(), ']');
         if (spans && joints.take(',') && joints.take('[')) {
             add(*spans);
-        } else if (!read_abb_robtarget(text, inner) && is_abb_target(text, at)) {
+        } else if (!read_abb_robtarget(text, inner) &&
+                   is_abb_target(text.substr(begin, at - begin))) {
             leave(at);
         }
     }
+    leave_unread(text, ';', &is_abb_target);
 }
 
 // ---- Universal Robots ----
@@ -405,10 +449,14 @@ void TargetReader::read_ur() {
     const auto is_move = [](std::string_view word) {
         return word == "movej" || word == "movel" || word == "movep";
     };
-    std::set<std::string> names;  // of targets that moves take
+    std::set<std::string> names;     // of targets that moves take
+    std::set<std::string> streamed;  // of those that servoj takes, which stay
     for (std::size_t at = text.find('('); at != std::string::npos; at = text.find('(', at + 1)) {
-        if (!is_move(word_before(text, at))) continue;
-        names.insert(std::string(Cursor(text, at + 1).word()));
+        const std::string_view word = word_before(text, at);
+        const std::string_view name = Cursor(text, at + 1).word();
+        if (!detail::is_identifier(name)) continue;
+        if (is_move(word)) names.emplace(name);
+        if (word == "servoj") streamed.emplace(name);
     }
     names.erase("p");
     for (std::size_t at = text.find('['); at != std::string::npos; at = text.find('[', at + 1)) {
@@ -420,7 +468,9 @@ void TargetReader::read_ur() {
         const bool is_target = (letter == '(' && is_move(word)) ||
                                (letter == '=' && names.contains(std::string(word)));
         if (!is_target || (is_pose && !takes_places())) {
-            if (is_pose && word != "set_tcp") leave(at);  // which is the tool
+            const bool is_streamed = (letter == '(' && word == "servoj") ||
+                                     (letter == '=' && streamed.contains(std::string(word)));
+            if (is_streamed || (is_pose && word != "set_tcp")) leave(at);  // which is the tool
             continue;
         }
         constexpr std::size_t pose_numbers = 6;
@@ -433,6 +483,14 @@ void TargetReader::read_ur() {
             add(*spans);
         }
     }
+    leave_unread(text, '\n', [&](std::string_view statement) {
+        for (std::size_t at = 0; at < statement.size(); ++at) {
+            const std::string_view word = detail::first_word(statement.substr(at));
+            if (is_move(word) || word == "servoj" || names.contains(std::string(word))) return true;
+            at += word.size();
+        }
+        return false;
+    });
 }
 
 /// The joint value in the file's unit.
@@ -456,6 +514,7 @@ TargetProgram read_program_targets(const std::string& path, ProgramFormat format
     joint_steps(format, joints);
     const detail::ProgramFile file(path);
     for (const detail::TextLine& line : file.lines()) kind->check(line);
+    if (kind->check_all != nullptr) kind->check_all(file.lines());
     TargetReader reader(path, format, joints, kinds);
     if (format == ProgramFormat::Fanuc) reader.read_fanuc();
     if (format == ProgramFormat::Kuka) reader.read_kuka();

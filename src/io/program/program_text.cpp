@@ -155,7 +155,12 @@ void check_brackets(const TextLine& statement) {
     for (const char letter : statement.text) {
         if (letter == '(' || letter == '[' || letter == '{') {
             open += letter == '(' ? ')' : letter == '[' ? ']' : '}';
-        } else if (!open.empty() && letter == open.back()) {
+        } else if (letter == ')' || letter == ']' || letter == '}') {
+            if (open.find(letter) == open.npos) {
+                throw statement.error(
+                    fmt::format("has a {} that nothing opens; must be opened", letter));
+            }
+            if (letter != open.back()) break;
             open.pop_back();
         }
     }

@@ -38,6 +38,7 @@ struct ProgramRules {
     FlowWords flow = {};
     std::string_view waits = "";     ///< begin statements at which the robot waits
     std::string_view messages = "";  ///< begin statements that show the pose's label
+    std::string_view moves = "";     ///< begin statements that move, or stand before their target
     std::string_view target = "";    ///< that moves have, and assignments
     Index target_numbers = 0;        ///< that follow it at least
 };
@@ -53,6 +54,8 @@ struct ProgramKind {
     /// Throws InputError where a statement of the line is spoilt, in whatever program it is: a slip
     /// in the word of a move, a move that does not end. `read` does so, too; nullptr: it alone.
     void (*check)(const TextLine& line) = nullptr;
+    /// The same of what only the whole program tells: a move to a position that is not there.
+    void (*check_all)(const std::vector<TextLine>& lines) = nullptr;
 };
 
 inline constexpr std::size_t longest_label = 16;
@@ -118,7 +121,7 @@ class ProgramFile {
     std::vector<TextLine> lines_;
 };
 
-/// Throws InputError where a bracket of the statement does not close.
+/// Throws InputError where a bracket of the statement does not close, or was not opened.
 void check_brackets(const TextLine& statement);
 
 /// Throws InputError where a statement has a move's target, of joint values, but none of these

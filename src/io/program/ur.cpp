@@ -67,7 +67,7 @@ std::vector<UrArgument> ur_arguments(const TextLine& move) {
 }
 
 void check_ur(const TextLine& line) {
-    constexpr std::string_view moves = "movej movel movep movec servoj speedj speedl";
+    const std::string_view moves = ur_program().rules.moves;
     const TextLine statement = without_comment(line);
     check_target(ur_program().rules, statement, moves);
     const std::string_view word = first_word(statement.text);
@@ -159,6 +159,7 @@ const ProgramKind& ur_program() {
                   .has_then = false},
          .waits = "sleep popup",
          .messages = "textmsg popup",
+         .moves = "movej movel movep movec servoj speedj speedl",
          .target = "([",
          .target_numbers = 6},
         &ur_files,
