@@ -71,9 +71,9 @@ def detect(
             raise InputError(
                 f"OpenCV cannot look for the board in image {name}: {error.err}"
             ) from None
-    seen = [one for one in found if len(one[0]) > 0]
+    is_seen = any(len(points) > 0 for points, _ in found)
     found = [_agreeing(cv2, stated, one) for one in found]
-    if seen and not any(len(points) > 0 for points, _ in found):
+    if is_seen and not any(len(points) > 0 for points, _ in found):
         raise InputError(
             f"`images` show parts of {stated.keys()}, but not where that board has them; must be "
             "stated as it is printed: columns, rows, sizes"
@@ -151,7 +151,8 @@ def _grey(cv2: Any, image: Image, name: str) -> npt.NDArray[np.uint8]:
         if grey is None:
             raise InputError(f"{path}: cannot be read as an image")
         return np.asarray(grey)
-    if image.size == 0 or image.dtype != np.uint8 or not (image.ndim == 2 or (image.ndim == 3 and image.shape[2] == 3)):
+    is_plain = image.ndim == 2 or (image.ndim == 3 and image.shape[2] == 3)
+    if image.size == 0 or image.dtype != np.uint8 or not is_plain:
         raise InputError(
             f"`images` has an array {image.shape} of {image.dtype}, image {name}; must be uint8, "
             "(height, width) or (height, width, 3)"
@@ -346,13 +347,12 @@ def _agreeing(cv2: Any, board: Board, found: Found) -> Found:
     fewest = (0.9 if board.kind == "chessboard" else 0.5) * len(points)
     places = board.corners[points]
     kept = list(range(len(points)))
-    worst = _out_of_line(cv2, board, places, pixels)
-    while worst is not None and len(kept) >= fewest:
-        del kept[worst]
+    while len(kept) >= fewest:
         worst = _out_of_line(cv2, board, places[kept], pixels[kept])
-    if len(kept) < fewest:
-        return _nothing
-    return points[kept], pixels[kept]
+        if worst is None:
+            return points[kept], pixels[kept]
+        del kept[worst]
+    return _nothing
 
 
 def _out_of_line(cv2: Any, board: Board, places: Array, pixels: Array) -> int | None:

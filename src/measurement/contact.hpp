@@ -41,8 +41,9 @@ std::optional<ShownPoses> touching_poses(const Campaign& campaign, const Paramet
 /// clearances, or the least of fewer. Leaves them in another order.
 double needed_clearance(Eigen::Ref<VectorXd> clearances, Index needed);
 
-/// Of random_configurations() those that show a sensor with has_view() as many of its targets as it
-/// needs, and which; where too few do, also those that show nearly as many, all taken as seen.
+/// Random configurations at which a sensor with has_view() has as many targets in view as it needs,
+/// and which targets these are. Where too few do, those that come nearest to it join them; all of
+/// their targets are taken as seen.
 ShownPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, Index count,
                         std::uint64_t seed);
 

@@ -258,8 +258,8 @@ std::string describe_shortfall(const TargetPlanning& found) {
         case TargetEnding::TooManyPoses:
             if (const CountPrediction* const enough = first_within(found)) {
                 return fmt::format(
-                    "{}: about {} would do, as chosen from the pool; so many are planned when they "
-                    "are asked for, --poses {}; {}; {}a larger limit takes fewer",
+                    "{}: about {} would do, as chosen from the pool; plan them with --poses {}; "
+                    "{}; {}a larger limit takes fewer",
                     describe_limit(target), count_of(enough->pose_count, "new pose"),
                     enough->pose_count, floor, describe_luck(found));
             }

@@ -173,7 +173,7 @@ struct StudyOptions {
     std::optional<Index> splits{};
     double holdout = 0.3;       ///< share of the configurations that a split judges on
     double least_distance = 0;  ///< rad, between any two in a planned subset, see PlanRequest
-    Index starts = 0;           ///< of the search; 0: 4, of more than 200 candidates 1
+    Index starts = 0;           ///< 0: 4, or 1 where a split has over 200 candidates
     std::optional<std::uint64_t> seed{};  ///< for all draws; nothing: the campaign's
     /// For measured configurations: judges the calibration with all of them, before any case is
     /// run.

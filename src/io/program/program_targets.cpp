@@ -449,8 +449,8 @@ void TargetReader::read_ur() {
     const auto is_move = [](std::string_view word) {
         return word == "movej" || word == "movel" || word == "movep";
     };
-    std::set<std::string> names;     // of targets that moves take
-    std::set<std::string> streamed;  // of those that servoj takes, which stay
+    std::set<std::string> names;     // targets that moves take
+    std::set<std::string> streamed;  // targets that servoj takes: they stay
     for (std::size_t at = text.find('('); at != std::string::npos; at = text.find('(', at + 1)) {
         const std::string_view word = word_before(text, at);
         const std::string_view name = Cursor(text, at + 1).word();

@@ -54,7 +54,8 @@ struct ProgramKind {
     /// Throws InputError where a statement of the line is spoilt, in whatever program it is: a slip
     /// in the word of a move, a move that does not end. `read` does so, too; nullptr: it alone.
     void (*check)(const TextLine& line) = nullptr;
-    /// The same of what only the whole program tells: a move to a position that is not there.
+    /// Throws InputError where lines contradict each other: a move leads to a position that is not
+    /// there. nullptr: nothing to check.
     void (*check_all)(const std::vector<TextLine>& lines) = nullptr;
 };
 

@@ -78,9 +78,9 @@ Prior make_prior(const Campaign& campaign, const Campaign& reduced, const Earlie
     return prior;
 }
 
-/// Of what is as surely known as that, on another day and elsewhere: what the model lacks differs
-/// from pose to pose of real robots, so that twenty planned poses know it within 1.2 to 1.5, many
-/// within 1.2. Never less surely than of any robot.
+/// Widens a factor that a size is known within, as its estimate says, for other poses and days:
+/// what the model lacks differs from pose to pose of real robots, so that twenty planned poses know
+/// it within 1.2 to 1.5, many within 1.2. At most the factor for any robot.
 double elsewhere(double within, double of_any) {
     constexpr double factor = 1.3;
     return std::min(std::exp(std::hypot(std::log(within), std::log(factor))), of_any);

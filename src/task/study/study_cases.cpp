@@ -10,9 +10,8 @@ namespace {
 
 constexpr Index few_candidates = 200;
 
-/// Of many candidates one start with few kicks finds choices as good as any, for all that
-/// calibrating can tell: their criterion is lower by half a percent in the mean. Of few more are
-/// needed, and take no longer.
+/// Among many candidates one start with few kicks finds choices whose criterion is half a percent
+/// lower in the mean, which no calibration shows. Few candidates need more, and take no longer.
 Index kick_count(Index candidates) {
     return std::clamp<Index>(2000 / candidates, 4, SelectOptions{}.kicks);
 }
