@@ -179,6 +179,7 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     CalibrationOptions options = make_options(arguments, file.seed);
     const io::MeasurementsFile measured =
         read_measured_without(options.excluded, paths, file, earlier, plan);
+    check_needs_unit(paths, measured.is_joined || validation.is_joined);
     options.conditions = measured.conditions;
     io::Provenance made_from = provenance_of(command, file, paths.measurements, measured);
     if (!earlier.from.empty()) {

@@ -52,6 +52,7 @@ Measurements read_input(const IndicesArguments& arguments, const io::CampaignFil
     const std::optional<Plan> plan = read_measured_plan(arguments.paths, file);
     const auto all =
         read_measured_without(excluded, arguments.paths, file, arguments.earlier, plan);
+    check_needs_unit(arguments.paths, all.is_joined);
     if (!plan) return all;
     return take(all, find_planned(arguments.paths.plan, *plan, file, all, excluded));
 }

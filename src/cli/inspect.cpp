@@ -144,8 +144,8 @@ void inspect(const InspectArguments& arguments, const CommonOptions& common) {
     if (!paths.measurements.empty()) {
         const std::optional<Plan> plan = read_measured_plan(paths, file);
         const auto measurements = read_as_stated(paths.measurements, file, points_of(paths, plan));
-        check_needs_unit(paths, measurements);
-        check_needs_plan(paths, measurements);
+        check_needs_unit(paths, measurements.is_joined);
+        check_needs_plan(paths, measurements.is_joined);
         readings = compute_from(paths.measurements, [&] {
             ReadingSearch search = search_readings(file, measurements);
             if (!search.undetermined.empty()) throw InputError(search.undetermined);

@@ -67,14 +67,14 @@ io::PointsSource points_of(const InputPaths& paths, const std::optional<Plan>& p
     return {plan ? &*plan : nullptr, paths.plan, paths.points_unit};
 }
 
-void check_needs_unit(const InputPaths& paths, const io::MeasurementsFile& measured) {
-    if (measured.is_joined || paths.points_unit.empty()) return;
+void check_needs_unit(const InputPaths& paths, bool is_joined) {
+    if (is_joined || paths.points_unit.empty()) return;
     throw input_error_at({paths.measurements},
                          "has units of its own; --points-unit must be left out");
 }
 
-void check_needs_plan(const InputPaths& paths, const io::MeasurementsFile& measured) {
-    if (measured.is_joined || paths.plan.empty()) return;
+void check_needs_plan(const InputPaths& paths, bool is_joined) {
+    if (is_joined || paths.plan.empty()) return;
     throw input_error_at({paths.measurements},
                          "has joint values of its own; --plan must be left out");
 }
@@ -101,7 +101,6 @@ io::MeasurementsFile read_measured_without(const std::vector<std::string>& exclu
                                            const std::optional<Plan>& plan) {
     const std::string& path = paths.measurements;
     io::MeasurementsFile measured = read_as_stated(path, file, points_of(paths, plan));
-    check_needs_unit(paths, measured);
     warn_of_counting_twice(earlier.from, earlier.is_prior, path, measured);
     static_cast<Measurements&>(measured) =
         compute_from(path, [&] { return leave_out(measured, excluded); });

@@ -39,17 +39,17 @@ io::MeasurementsFile read_as_stated(const std::string& path, const io::CampaignF
                                     const io::PointsSource& points);
 
 /// read_measured() less what was excluded by hand, leave_out(). Warns of joints that never move,
-/// and of what an earlier estimate would count twice. Throws InputError for --points-unit without
-/// points.
+/// and of what an earlier estimate would count twice.
 io::MeasurementsFile read_measured_without(const std::vector<std::string>& excluded,
                                            const InputPaths& paths, const io::CampaignFile& file,
                                            const EarlierArguments& earlier,
                                            const std::optional<Plan>& plan = {});
 
-/// Throws InputError for options of points beside measurements that have joint values and units
-/// of their own: --points-unit and, where it is for nothing else, --plan.
-void check_needs_unit(const InputPaths& paths, const io::MeasurementsFile& measured);
-void check_needs_plan(const InputPaths& paths, const io::MeasurementsFile& measured);
+/// Throws InputError for options of points where none of what was read is a list of them, which is
+/// joined, but has joint values and units of its own: --points-unit and, where it is for nothing
+/// else, --plan.
+void check_needs_unit(const InputPaths& paths, bool is_joined);
+void check_needs_plan(const InputPaths& paths, bool is_joined);
 
 /// --exclude, as leave_out() takes it.
 void add_exclude_option(CLI::App& command, std::vector<std::string>& excluded);

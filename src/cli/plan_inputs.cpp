@@ -18,26 +18,25 @@ InputPaths paths_of(const std::string& measurements, const PlanSources& sources)
 }
 
 /// Poses measured already, --augment.
-std::optional<Measurements> read_held(const PlanRequest& request,
-                                      const io::CampaignFile& campaign) {
+std::optional<io::MeasurementsFile> read_held(const PlanRequest& request,
+                                              const io::CampaignFile& campaign) {
     const PlanSources& sources = request.sources;
     if (sources.augment.empty()) return std::nullopt;
     const InputPaths paths = paths_of(sources.augment, sources);
     const std::optional<Plan> plan = read_measured_plan(paths, campaign);
     io::MeasurementsFile held = read_measured(sources.augment, campaign, points_of(paths, plan));
-    check_needs_unit(paths, held);
     warn_of_counting_twice(sources.estimate, request.earlier.is_prior, sources.augment, held);
     return held;
 }
 
+/// `is_joined` is set where they are a list of points.
 Candidates read_candidates(const PlanSources& sources, CandidateKind kind,
-                           const io::CampaignFile& campaign) {
+                           const io::CampaignFile& campaign, bool& is_joined) {
     if (kind == CandidateKind::Measurements) {
         const InputPaths paths = paths_of(sources.candidates, sources);
         const io::MeasurementsFile read =
             read_measured_without({}, paths, campaign, {}, read_measured_plan(paths, campaign));
-        // Else the plan may be that of --augment.
-        if (sources.augment.empty()) check_needs_plan(paths, read);
+        is_joined = read.is_joined;
         return measured_candidates(read);
     }
     io::Configurations read = io::read_configurations(sources.candidates, campaign);
@@ -63,10 +62,18 @@ void read_with_robot(ChoiceInputs& inputs, CandidateKind kind, Index count) {
     ChoiceOptions& options = inputs.options;
     const PlanSources& sources = options.sources;
     const io::CampaignFile& campaign = *inputs.campaign;
+    bool is_joined = false;
     if (kind != CandidateKind::Random) {
-        inputs.candidates = read_candidates(sources, kind, campaign);
+        inputs.candidates = read_candidates(sources, kind, campaign, is_joined);
     }
-    options.held = read_held(options, campaign);
+    if (const auto held = read_held(options, campaign)) {
+        options.held = *held;
+        is_joined |= held->is_joined;
+    }
+    const bool has_measured = kind == CandidateKind::Measurements;
+    const InputPaths paths = paths_of(has_measured ? sources.candidates : sources.augment, sources);
+    check_needs_unit(paths, is_joined);
+    check_needs_plan(paths, is_joined);
     if (kind == CandidateKind::Random) {
         inputs.candidates =
             random_candidates(campaign, count, options.seed.value_or(campaign.seed));

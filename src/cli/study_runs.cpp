@@ -142,7 +142,8 @@ std::vector<Study> study_measured(const StudyArguments& arguments, const CommonO
     const std::optional<Plan> plan = read_measured_plan(paths, file);
     const auto measurements =
         read_measured_without(arguments.excluded, paths, file, arguments.earlier, plan);
-    check_needs_plan(paths, measurements);
+    check_needs_unit(paths, measurements.is_joined);
+    check_needs_plan(paths, measurements.is_joined);
     StudyOptions options = arguments.options;
     options.random_subsets = arguments.random_subsets.value_or(StudyOptions().random_subsets);
     complete_options(options, arguments, stop);

@@ -20,8 +20,10 @@ Validation read_validation(const CalibrateArguments& arguments, const io::Campai
                                     file.robot);
     }
     if (arguments.validate.empty()) return validation;
-    validation.measured = read_measured(arguments.validate,
-                                        validation.campaign ? *validation.campaign : file, points);
+    const io::MeasurementsFile read = read_measured(
+        arguments.validate, validation.campaign ? *validation.campaign : file, points);
+    validation.measured = read;
+    validation.is_joined = read.is_joined;
     return validation;
 }
 

@@ -13,6 +13,7 @@ namespace posewise::cli {
 struct Validation {
     std::optional<io::CampaignFile> campaign;
     std::optional<Measurements> measured;
+    bool is_joined = false;  ///< from points and a plan
 };
 /// `file`: the campaign to calibrate with; `points`: for a list of points.
 Validation read_validation(const CalibrateArguments& arguments, const io::CampaignFile& file,

@@ -199,7 +199,25 @@ TEST_F(Points, AreChosenFromAndCountAsMeasured) {
               plan_of("--candidates poses.csv --augment few_table.csv", "d.json"));
     EXPECT_NE(plan_of("--candidates poses.csv", "e.json"),
               plan_of("--candidates poses.csv --augment few.csv --plan poses.csv", "c.json"));
-    for (const std::string plan : {"a.json", "c.json"}) EXPECT_EQ(run("verify " + plan).code, 0);
+    // The unit is that of the list, beside a table that has its own.
+    write_list("bare.txt", shuffled_, row);
+    write_list("bare_few.txt", few, row);
+    const std::string unit = " --plan poses.csv --points-unit mm";
+    EXPECT_EQ(plan_of("-m m.csv --augment bare_few.txt" + unit, "f.json"),
+              plan_of("-m m.csv --augment few_table.csv", "g.json"));
+    EXPECT_EQ(plan_of("-m bare.txt --augment few_table.csv" + unit, "f.json"),
+              plan_of("-m m.csv --augment few_table.csv", "g.json"));
+    run_well(
+        "calibrate c.yaml -m m.csv --validate bare.txt --points-unit mm --plan plan.json -o "
+        "h.json");
+    expect_input_error("select c.yaml -m m.csv --augment few_table.csv -k 6 -o i.json" + unit,
+                       "m.csv: has units of its own; --points-unit must be left out");
+    expect_input_error(
+        "select c.yaml --candidates poses.csv --augment few_table.csv --plan poses.csv -k 6 -o "
+        "i.json",
+        "few_table.csv: has joint values of its own; --plan must be left out");
+    for (const std::string plan : {"a.json", "c.json", "f.json"})
+        EXPECT_EQ(run("verify " + plan).code, 0);
     run_well("report a.json -o a.html");
     expect_input_error("select c.yaml -m p.csv -k 6 -o f.json", "p.csv");
     expect_input_error("select c.yaml -m m.csv --plan poses.csv -k 6 -o f.json",
