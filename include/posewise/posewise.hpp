@@ -2,10 +2,8 @@
 
 /// Everything a program needs: one call per task, with its inputs and results. To use less, include
 /// single headers.
-#include "posewise/core/threads.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/core/version.hpp"
-#include "posewise/io/blocks_file.hpp"
-#include "posewise/io/camera_places.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/documents.hpp"
 #include "posewise/io/measurements_file.hpp"
@@ -16,7 +14,6 @@
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/report/reports.hpp"
-#include "posewise/task/blocks_study.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/correction.hpp"
@@ -24,5 +21,4 @@
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"
 #include "posewise/task/scene.hpp"
-#include "posewise/task/sent_plan.hpp"
 #include "posewise/task/study.hpp"

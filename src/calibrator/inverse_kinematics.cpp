@@ -1,5 +1,3 @@
-#include "posewise/calibrator/inverse_kinematics.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>

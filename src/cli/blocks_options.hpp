@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "posewise/io/blocks_file.hpp"
+#include "posewise/io/measurements_file.hpp"
 #include "posewise/task/plan.hpp"
 
 /// What commands that take plain blocks in the place of a robot have in common.

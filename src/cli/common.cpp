@@ -15,7 +15,7 @@
 #include "flags.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/threads.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/io/documents.hpp"
 #include "posewise/io/result_files.hpp"

@@ -18,10 +18,10 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/io/documents.hpp"
 #include "posewise/io/measurements_file.hpp"
-#include "posewise/io/program_targets.hpp"
+#include "posewise/io/robot_programs.hpp"
 #include "posewise/report/reports.hpp"
-#include "posewise/task/cartesian_targets.hpp"
-#include "posewise/task/sent_plan.hpp"
+#include "posewise/task/correction.hpp"
+#include "posewise/task/planning.hpp"
 
 namespace posewise::cli {
 namespace {

@@ -10,8 +10,8 @@
 #include "files.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/io/correction_map_file.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/io/result_files.hpp"
 #include "posewise/model/error_terms.hpp"
 
 namespace posewise::cli {

@@ -8,8 +8,8 @@
 #include "files.hpp"
 #include "measured.hpp"
 #include "options.hpp"
-#include "posewise/io/blocks_file.hpp"
 #include "posewise/io/documents.hpp"
+#include "posewise/io/measurements_file.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/report/reports.hpp"
 

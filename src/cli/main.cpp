@@ -15,7 +15,7 @@
 #include "help.hpp"
 #include "page.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/threads.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/core/version.hpp"
 #include "threads.hpp"
 

@@ -23,7 +23,7 @@
 #include "posewise/io/documents.hpp"
 #include "posewise/io/result_files.hpp"
 #include "posewise/io/robot_programs.hpp"
-#include "posewise/task/sent_plan.hpp"
+#include "posewise/task/planning.hpp"
 
 namespace posewise::cli {
 namespace {

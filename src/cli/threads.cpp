@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "common.hpp"
-#include "posewise/core/threads.hpp"
+#include "posewise/core/progress.hpp"
 
 namespace posewise::cli {
 

@@ -8,7 +8,7 @@
 #include <mutex>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/core/threads.hpp"
+#include "posewise/core/progress.hpp"
 
 namespace posewise {
 

@@ -1,4 +1,4 @@
-#include "posewise/core/threads.hpp"
+#include "posewise/core/progress.hpp"
 
 namespace posewise {
 

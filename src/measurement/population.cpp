@@ -1,10 +1,9 @@
-#include "posewise/measurement/population.hpp"
-
 #include <algorithm>
 
 #include "core/names.hpp"
 #include "core/text.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/measurement/campaign.hpp"
 #include "posewise/model/error_terms.hpp"
 
 namespace posewise {

@@ -9,7 +9,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/planner/prediction.hpp"
+#include "posewise/planner/planning.hpp"
 #include "unknowns.hpp"
 
 namespace posewise {

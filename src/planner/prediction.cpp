@@ -1,5 +1,3 @@
-#include "posewise/planner/prediction.hpp"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/planner/planning.hpp"
 #include "unknowns.hpp"
 
 namespace posewise {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "posewise/planner/prediction.hpp"
+#include "posewise/planner/planning.hpp"
 
 namespace posewise::detail {
 

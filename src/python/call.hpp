@@ -12,7 +12,6 @@
 
 #include "posewise/core/errors.hpp"
 #include "posewise/core/progress.hpp"
-#include "posewise/core/threads.hpp"
 
 /// Calls of the library from Python: they leave the interpreter to others, end early on Ctrl-C with
 /// the best result so far, and tell of their progress.

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "io/format/json.hpp"
-#include "posewise/task/blocks_study.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/plan.hpp"
 #include "posewise/task/planning.hpp"

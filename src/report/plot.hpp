@@ -4,7 +4,6 @@
 #include <functional>
 #include <string>
 
-#include "posewise/task/blocks_study.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/plan.hpp"
 #include "posewise/task/scene.hpp"

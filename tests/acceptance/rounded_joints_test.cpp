@@ -10,7 +10,6 @@
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/task/planning.hpp"
-#include "posewise/task/sent_plan.hpp"
 
 namespace posewise {
 namespace {

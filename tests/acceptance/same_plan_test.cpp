@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "../../src/core/simd.hpp"
-#include "posewise/core/threads.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/result_files.hpp"
 #include "posewise/task/choice.hpp"

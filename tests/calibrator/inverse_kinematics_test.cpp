@@ -1,10 +1,9 @@
-#include "posewise/calibrator/inverse_kinematics.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "../../src/model/sampling.hpp"
+#include "posewise/calibrator/correction.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "support/campaigns.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/core/threads.hpp"
+#include "posewise/core/progress.hpp"
 
 namespace posewise {
 namespace {

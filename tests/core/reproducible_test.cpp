@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "posewise/core/threads.hpp"
+#include "posewise/core/progress.hpp"
 
 namespace posewise {
 namespace {

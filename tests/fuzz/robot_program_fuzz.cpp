@@ -4,7 +4,6 @@
 #include <fstream>
 
 #include "fuzzed_file.hpp"
-#include "posewise/io/program_targets.hpp"
 #include "posewise/io/robot_programs.hpp"
 
 using namespace posewise;

@@ -1,8 +1,7 @@
-#include "posewise/io/blocks_file.hpp"
-
 #include <gtest/gtest.h>
 
 #include "posewise/core/random.hpp"
+#include "posewise/io/measurements_file.hpp"
 #include "posewise/io/result_files.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,5 +1,3 @@
-#include "posewise/io/correction_map_file.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <sstream>
 
 #include "io/format/atomic_file.hpp"
+#include "posewise/io/robot_files.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "support/campaigns.hpp"

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "io/format/atomic_file.hpp"
-#include "posewise/io/program_targets.hpp"
 #include "posewise/io/robot_programs.hpp"
 #include "program_examples.hpp"
 #include "support/temporary_folder.hpp"

@@ -2,8 +2,8 @@
 
 #include <numbers>
 
-#include "posewise/calibrator/inverse_kinematics.hpp"
-#include "posewise/io/program_targets.hpp"
+#include "posewise/calibrator/correction.hpp"
+#include "posewise/io/robot_programs.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/model/error_terms.hpp"
 #include "program_examples.hpp"

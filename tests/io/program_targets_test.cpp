@@ -1,8 +1,7 @@
-#include "posewise/io/program_targets.hpp"
-
 #include <gtest/gtest.h>
 
 #include "io/format/atomic_file.hpp"
+#include "posewise/io/robot_programs.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/task/correction.hpp"
 #include "program_examples.hpp"

@@ -4,9 +4,9 @@
 
 #include "../../src/core/statistics.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/threads.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/planner/prediction.hpp"
+#include "posewise/planner/planning.hpp"
 #include "support/fanuc_planning.hpp"
 
 namespace posewise {

@@ -2,7 +2,6 @@
 
 #include "../../src/model/halton.hpp"
 #include "posewise/planner/planning.hpp"
-#include "posewise/planner/prediction.hpp"
 #include "support/campaigns.hpp"
 
 /// The planning problem of the FANUC's first campaign: 33 parameters, 24 poses.

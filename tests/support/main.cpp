@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "posewise/core/threads.hpp"
+#include "posewise/core/progress.hpp"
 
 /// Every test program runs with fixed cache sizes, POSEWISE_TEST_L1_KIB of the first level (32 if
 /// it is not set): results must hold for any, see fix_cache_sizes().

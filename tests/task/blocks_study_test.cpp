@@ -1,5 +1,3 @@
-#include "posewise/task/blocks_study.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,9 +5,10 @@
 #include <cmath>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/core/random.hpp"
-#include "posewise/core/threads.hpp"
 #include "posewise/task/inspection.hpp"
+#include "posewise/task/study.hpp"
 #include "support/temporary_folder.hpp"
 
 /// Value and efficiency of plain blocks against the number of poses.

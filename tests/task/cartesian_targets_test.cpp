@@ -1,8 +1,7 @@
-#include "posewise/task/cartesian_targets.hpp"
-
 #include <gtest/gtest.h>
 
 #include "posewise/core/errors.hpp"
+#include "posewise/task/correction.hpp"
 #include "support/campaigns.hpp"
 #include "support/temporary_folder.hpp"
 

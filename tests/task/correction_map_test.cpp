@@ -1,10 +1,9 @@
-#include "posewise/task/correction_map.hpp"
-
 #include <gtest/gtest.h>
 
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "posewise/task/correction.hpp"
 #include "support/campaigns.hpp"
 
 namespace posewise {

@@ -4,7 +4,7 @@
 
 #include "posewise/core/random.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/planner/prediction.hpp"
+#include "posewise/planner/planning.hpp"
 #include "support/held_robot.hpp"
 
 /// What is predicted from an earlier estimate on, and how surely.

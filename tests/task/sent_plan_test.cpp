@@ -1,9 +1,8 @@
-#include "posewise/task/sent_plan.hpp"
-
 #include <gtest/gtest.h>
 
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/constraints.hpp"
+#include "posewise/task/planning.hpp"
 #include "support/cells.hpp"
 #include "support/sweep.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "../../src/task/choice/robot_blocks.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/core/threads.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/planning.hpp"

@@ -11,7 +11,6 @@
 #include "posewise/core/types.hpp"
 #include "posewise/io/robot_files.hpp"
 #include "posewise/measurement/campaign.hpp"
-#include "posewise/measurement/population.hpp"
 #include "posewise/model/controller.hpp"
 #include "posewise/task/judgement.hpp"
 

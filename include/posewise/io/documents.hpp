@@ -5,17 +5,13 @@
 #include <utility>
 #include <vector>
 
-#include "posewise/io/camera_places.hpp"
 #include "posewise/io/result_files.hpp"
-#include "posewise/io/robot_files.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/model/dh.hpp"
 #include "posewise/task/answers.hpp"
-#include "posewise/task/blocks_study.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/correction.hpp"
-#include "posewise/task/correction_map.hpp"
 #include "posewise/task/doubts.hpp"
 #include "posewise/task/inspection.hpp"
 #include "posewise/task/planning.hpp"

@@ -9,6 +9,7 @@
 #include "posewise/model/chain.hpp"
 #include "posewise/model/dh.hpp"
 #include "posewise/model/error_terms.hpp"
+#include "posewise/task/correction.hpp"
 #include "posewise/task/inspection.hpp"
 
 namespace posewise::io {
@@ -161,5 +162,14 @@ UrFrames read_ur_kinematics(const std::string& path);
 /// limits are those of the chain's joints. Throws InputError if a joint drives two rows and no row
 /// is its own.
 std::string make_dh_text(const Chain& chain, const std::vector<DhRow>& rows);
+
+/// Writes a map for a cell's own software, with what it is, how it is used and how far it is off:
+/// a C99 source with the table and two functions (`.c`), or the table alone (`.csv`). Throws
+/// InputError for another ending.
+void write_correction_map(const std::string& path, const std::string& title,
+                          const CorrectionMap& map);
+
+/// Throws InputError unless the path ends in .c or .csv.
+void check_map_path(const std::string& path);
 
 }  // namespace posewise::io

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "posewise/task/answers.hpp"
-#include "posewise/task/blocks_study.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/correction.hpp"

@@ -10,7 +10,7 @@
 #include "posewise/criteria/criterion.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/model/cell.hpp"
-#include "posewise/planner/prediction.hpp"
+#include "posewise/planner/planning.hpp"
 #include "posewise/selection/choice.hpp"
 #include "posewise/task/calibration.hpp"
 

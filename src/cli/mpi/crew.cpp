@@ -12,7 +12,7 @@
 #include "cli/launcher.hpp"
 #include "leader.hpp"
 #include "messages.hpp"
-#include "posewise/core/threads.hpp"
+#include "posewise/core/progress.hpp"
 
 namespace posewise::cli {
 namespace {

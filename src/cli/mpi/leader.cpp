@@ -9,7 +9,7 @@
 
 #include "cli/crew.hpp"
 #include "messages.hpp"
-#include "posewise/core/threads.hpp"
+#include "posewise/core/progress.hpp"
 
 namespace posewise::cli::mpi {
 namespace {

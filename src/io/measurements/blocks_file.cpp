@@ -1,5 +1,3 @@
-#include "posewise/io/blocks_file.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,6 +14,7 @@
 #include "io/format/text.hpp"
 #include "matrix_file.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/io/measurements_file.hpp"
 #include "posewise/io/result_files.hpp"
 
 namespace posewise::io {

@@ -9,7 +9,7 @@
 #include "io/format/csv_reader.hpp"
 #include "io/format/text.hpp"
 #include "io/format/units.hpp"
-#include "posewise/io/program_targets.hpp"
+#include "posewise/io/robot_programs.hpp"
 
 // Tables of Cartesian targets.
 

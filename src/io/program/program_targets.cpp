@@ -1,5 +1,3 @@
-#include "posewise/io/program_targets.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 
 #include "core/text.hpp"
 #include "io/format/text.hpp"
+#include "posewise/io/robot_programs.hpp"
 #include "target_text.hpp"
 
 namespace posewise::io {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "posewise/io/program_targets.hpp"
+#include "posewise/io/robot_programs.hpp"
 #include "program_text.hpp"
 
 /// What readers of the targets of existing programs share.

@@ -1,5 +1,3 @@
-#include "posewise/io/correction_map_file.hpp"
-
 #include <fmt/format.h>
 
 #include <iterator>
@@ -9,6 +7,7 @@
 #include "io/format/csv_reader.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
+#include "posewise/io/robot_files.hpp"
 
 namespace posewise::io {
 namespace {

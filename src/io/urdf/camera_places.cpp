@@ -1,11 +1,10 @@
-#include "posewise/io/camera_places.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "core/text.hpp"
 #include "io/format/atomic_file.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/io/result_files.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/model/chain.hpp"
 #include "urdf_tree.hpp"

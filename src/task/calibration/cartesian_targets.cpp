@@ -1,12 +1,11 @@
-#include "posewise/task/cartesian_targets.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/LU>
 
 #include "core/text.hpp"
-#include "posewise/calibrator/inverse_kinematics.hpp"
+#include "posewise/calibrator/correction.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/task/correction.hpp"
 
 namespace posewise {
 namespace {

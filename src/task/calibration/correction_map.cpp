@@ -1,5 +1,3 @@
-#include "posewise/task/correction_map.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "model/element_amount.hpp"
 #include "model/sampling.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/task/correction.hpp"
 
 namespace posewise {
 namespace {

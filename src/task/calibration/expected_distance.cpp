@@ -5,7 +5,7 @@
 #include "calibrator/least_squares.hpp"
 #include "core/decompositions.hpp"
 #include "model/complete_model.hpp"
-#include "posewise/planner/prediction.hpp"
+#include "posewise/planner/planning.hpp"
 
 namespace posewise::detail {
 

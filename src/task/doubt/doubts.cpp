@@ -16,7 +16,7 @@
 #include "posewise/core/types.hpp"
 #include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/model/error_terms.hpp"
-#include "posewise/planner/prediction.hpp"
+#include "posewise/planner/planning.hpp"
 #include "residual_ratio.hpp"
 
 namespace posewise {

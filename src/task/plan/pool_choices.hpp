@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "posewise/planner/planning.hpp"
-#include "posewise/planner/prediction.hpp"
 
 namespace posewise::detail {
 

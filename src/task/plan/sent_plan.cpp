@@ -1,5 +1,3 @@
-#include "posewise/task/sent_plan.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +9,8 @@
 #include "planner/tour.hpp"
 #include "planning_problem.hpp"
 #include "posewise/core/errors.hpp"
-#include "posewise/planner/prediction.hpp"
+#include "posewise/planner/planning.hpp"
+#include "posewise/task/planning.hpp"
 #include "selection/bound.hpp"
 #include "task/choice/choice_problem.hpp"
 

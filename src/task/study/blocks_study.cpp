@@ -1,5 +1,3 @@
-#include "posewise/task/blocks_study.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "criteria/row_value.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/random.hpp"
+#include "posewise/task/study.hpp"
 #include "selection/bound.hpp"
 #include "selection/validation.hpp"
 #include "task/calibration/inputs.hpp"

@@ -9,7 +9,7 @@
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
-#include "posewise/planner/prediction.hpp"
+#include "posewise/planner/planning.hpp"
 #include "posewise/task/planning.hpp"
 #include "study_cases.hpp"
 #include "task/calibration/inputs.hpp"
