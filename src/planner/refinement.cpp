@@ -83,7 +83,7 @@ class Refiner {
             if (is_constrained() || !is_swept_) sweep(objective, Method::Lbfgs);
             is_swept_ = true;
             if (round == 0 && !is_promising(objective)) return;
-            move_together(objective);
+            if (moves_together_) move_together(objective);
             const double after = current(objective);
             // Along constraints a round is the first step.
             if (round == 0 && is_constrained() && !is_near_worth(objective, before, after)) return;
@@ -266,6 +266,7 @@ class Refiner {
         }
         if (current(objective) >= before) return;
         for (Index i = 0; i < m; ++i) place(i, start.segment(n * i, n));
+        moves_together_ = false;
     }
 
     const DesignSpace& space_;
@@ -276,6 +277,7 @@ class Refiner {
     std::vector<MatrixXd> informations_;
     double tolerance_ = 1e-10;
     bool is_swept_;
+    bool moves_together_ = true;  ///< until it was taken back: constraints lie in between
     Ending ending_ = Ending::NotRun;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "posewise/core/errors.hpp"
@@ -54,6 +55,28 @@ TEST_F(MakePlan, IsVerifiedWithoutAnyFile) {
     edited.poses[2].via->setZero();
     (*edited.poses[2].via)[1] = 1;  // the arm lies on the table
     EXPECT_EQ(verify(edited, campaign_, options_).wrong(), std::vector<std::string>{"poses"});
+}
+
+/// What the model lacks is the same at the same pose, so it must not be measured there twice.
+TEST_F(MakePlan, HasNoPoseTwiceWhereTheModelLacksSomething) {
+    const auto least_distance = [&] {
+        const std::vector<PlannedPose> poses = make_plan(campaign_, options_).plan.poses;
+        double least = std::numeric_limits<double>::infinity();
+        for (auto a = poses.begin(); a != poses.end(); ++a) {
+            for (auto b = a + 1; b != poses.end(); ++b) {
+                least = std::min(least, joint_distance(a->configuration, b->configuration));
+            }
+        }
+        return least;
+    };
+    campaign_ = with_robot(campaign_, without_parameters(campaign_.robot));
+    campaign_.cell = {};
+    for (const Index joint : {0, 1, 2, 3}) campaign_.cell.fixed_joints[joint] = 0;
+    options_.pose_count = 12;
+    campaign_.model_error = campaign_.model_error_orientation = 0;
+    EXPECT_LT(least_distance(), to_radians(5));
+    campaign_.model_error = 1e-4;
+    EXPECT_GE(least_distance(), to_radians(5) - 1e-9);
 }
 
 TEST_F(MakePlan, KeepsSumsOfJointsAtEveryPoseAndOnTheWay) {

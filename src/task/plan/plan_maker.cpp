@@ -1,5 +1,7 @@
 #include "plan_maker.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "core/decompositions.hpp"
@@ -7,6 +9,7 @@
 #include "planner/plan_space.hpp"
 #include "planner/tour.hpp"
 #include "pool_choices.hpp"
+#include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "task/calibration/expected_distance.hpp"
 #include "task/calibration/inputs.hpp"
@@ -45,6 +48,21 @@ std::vector<PlannedPose> arrange(const PlanningProblem& problem, const RowMatrix
     return arranged;
 }
 
+/// Whether two planned poses, or one and a measured one, differ by less in every joint.
+bool has_repeats(const RowMatrixXd& planned, const RowMatrixXd& measured, double distance) {
+    for (Index i = 0; i < planned.rows(); ++i) {
+        if (!is_apart(planned.topRows(i), planned.row(i), distance) ||
+            !is_apart(measured, planned.row(i), distance)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool has_model_error(const Campaign& campaign) {
+    return campaign.model_error > 0 || campaign.model_error_orientation > 0;
+}
+
 Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, const Pool& pool,
                  const Tour& tour) {
     const Campaign& campaign = problem.campaign;
@@ -69,6 +87,14 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
     plan.assumptions = assumptions_of(campaign);
     const std::string unchecked = describe_unchecked_bodies(campaign);
     if (!unchecked.empty()) plan.cell_doubts.push_back(unchecked);
+    if (has_model_error(campaign) &&
+        has_repeats(planned.configurations, problem.search.held.configurations,
+                    distance_from_others)) {
+        plan.cell_doubts.push_back(
+            fmt::format("the pool has too few poses that are {:g} deg apart in some joint; where "
+                        "two are nearer, what the model lacks is counted as independent but is not",
+                        to_degrees(distance_from_others)));
+    }
     return plan;
 }
 
@@ -156,8 +182,8 @@ Planning PlanMaker::make(Index pose_count,
                          const std::function<bool(const Planning&)>& needs_bound) const {
     PlanOptions search = search_for(pose_count);
     search.progress = options_.progress;
-    const Candidates from = candidates(pool_.configurations.rows());
-    PlannedPoses planned = plan_poses(from.space, from.configurations, from.blocks, search);
+    Candidates from = candidates(pool_.configurations.rows());
+    PlannedPoses planned = plan_apart(from, search);
     Planning planning = finish(search, planned);
     planning.chosen = predict_choice(planned.pool_choice.poses, from.blocks);
     if (!needs_bound(planning)) return planning;
@@ -185,9 +211,25 @@ PredictedAccuracy PlanMaker::predict_choice(const std::vector<Index>& poses,
 Planning PlanMaker::make_quickly(Index pose_count) const {
     PlanOptions search = search_for(pose_count);
     search.starts = 1;
-    const Candidates from = candidates(
+    Candidates from = candidates(
         std::min(pool_.configurations.rows(), std::max(quick_pool_part, 2 * pose_count)));
-    return finish(search, plan_poses(from.space, from.configurations, from.blocks, search));
+    return finish(search, plan_apart(from, search));
+}
+
+PlannedPoses PlanMaker::plan_apart(Candidates& from, const PlanOptions& search) const {
+    PlannedPoses planned = plan_poses(from.space, from.configurations, from.blocks, search);
+    const RowMatrixXd& measured = search.held.configurations;
+    if (from.space.least_joint_distance >= distance_from_others ||
+        !has_model_error(problem_.campaign) ||
+        !has_repeats(planned.configurations, measured, distance_from_others)) {
+        return planned;
+    }
+    from.space.least_joint_distance = distance_from_others;
+    try {
+        return plan_poses(from.space, from.configurations, from.blocks, search);
+    } catch (const InputError&) {  // so many poses are not apart; make_result() tells
+        return planned;
+    }
 }
 
 void PlanMaker::add_verification(Planning& planning) const {

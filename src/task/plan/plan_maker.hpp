@@ -48,6 +48,10 @@ class PlanMaker {
     Candidates candidates(Index pool_part) const;
     /// Without a bound.
     PlanOptions search_for(Index pose_count) const;
+    /// Plans. Poses that are nearly alike share what the model lacks, which the information takes
+    /// as independent: a plan that has some is made again with a least distance, if the pool allows
+    /// it.
+    PlannedPoses plan_apart(Candidates& from, const PlanOptions& search) const;
     Ending ending_of(const PlannedPoses& planned) const;
     Planning finish(PlanOptions search, const PlannedPoses& planned) const;
     /// Accuracy by poses of the pool, whose blocks these are.

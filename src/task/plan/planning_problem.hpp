@@ -22,8 +22,8 @@ struct PlanningProblem {
     PlanOptions search;  ///< without test poses, which are errors.by_parameters for G and V
 };
 
-/// New poses keep so far from those that could not be reached, poses to verify from all others
-/// (some joint, rad; farther if the cell says so).
+/// New poses keep so far from those that could not be reached and, under a model error, from each
+/// other; poses to verify from all others (some joint, rad; farther if the cell says so).
 inline constexpr double distance_from_others = to_radians(5);
 
 /// "camera.x_m": a number's name in a plan, with its SI unit if it has one.
