@@ -1,7 +1,8 @@
 // What a calibration of a few planned poses expects, beside what it leaves at poses held out: the
-// study's splits, and how many held-out points the stated 95 % bounds hold.
+// study's splits, and how many held-out points the stated 95 % bounds hold; also of halves of
+// the campaign.
 //
-//   real_robots_benchmark CAMPAIGN MEASUREMENTS SPLITS RANDOM COUNT...
+//   real_robots_benchmark CAMPAIGN MEASUREMENTS SPLITS RANDOM [COUNT...]
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -50,6 +51,24 @@ double held_share(const Campaign& campaign, const Measurements& chosen,
     return static_cast<double>(held) / static_cast<double>(seen);
 }
 
+/// The same of random halves of the campaign, each judged on the other.
+void print_halves(const Campaign& campaign, const Measurements& measured, Index splits) {
+    const Index all = measured.configuration_count();
+    std::vector<double> held;
+    for (Index split = 0; split < splits; ++split) {
+        const std::vector<Index> first =
+            RandomStream(1, static_cast<std::uint64_t>(split)).subset(all, all / 2);
+        std::vector<Index> second(static_cast<std::size_t>(all));
+        std::iota(second.begin(), second.end(), Index{0});
+        std::erase_if(second, [&](Index i) { return std::ranges::binary_search(first, i); });
+        held.push_back(held_share(campaign, take(measured, first), take(measured, second)));
+        held.push_back(held_share(campaign, take(measured, second), take(measured, first)));
+    }
+    const auto [least, most] = std::minmax_element(held.begin(), held.end());
+    fmt::print("halves: {:.1f} %   ({:.0f}, {:.0f})\n", 100 * mean(held), 100 * *least,
+               100 * *most);
+}
+
 void run(int argc, char** argv) {
     const io::CampaignFile file = io::read_campaign(argv[1]);
     const io::MeasurementsFile measured = io::read_measurements(argv[2], file);
@@ -59,6 +78,8 @@ void run(int argc, char** argv) {
     options.random_subsets = std::atoi(argv[4]);
     options.criteria = {Criterion::V};
     for (int i = 5; i < argc; ++i) options.pose_counts.push_back(std::atoi(argv[i]));
+    print_halves(file, measured, options.splits.value());
+    if (options.pose_counts.empty()) return;
     const Study result = study(file, measured, options);
     const Index all = measured.configuration_count();
     fmt::print("{}, {} splits of {} configurations; 95 %: share of held-out points within\n",
