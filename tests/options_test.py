@@ -27,7 +27,7 @@ FREE = {"--help", "--json", "--threads", "--time", "--progress", "--no-prior"}
 VALUES = {
     "CAMPAIGN": "arm.yaml", "--measurements": "few.csv", "--candidates": "pool.csv", "--random": "9", "--blocks": "blocks.csv",
     "--rows": "3", "--variable": "x", "--repeats": "3", "--poses": "7", "--criterion": "a", "--criteria": "a",
-    "--test-poses": "poses.csv", "--focus": "robot", "--augment": "few.csv", "--exclude": "5", "--groups": "groups.csv",
+    "--test-poses": "poses.csv", "--focus": "robot", "--augment": "few.csv", "--augment-plan": "plan.json", "--exclude": "5", "--groups": "groups.csv",
     "--per-group": "2", "--repeat-limit": "2", "--least-distance-deg": "500", "--starts": "2", "--proof": "1", "--effort": "quick", "--seed": "99",
     "--out": "out2.json", "--report": "out2.html", "--digits": "12", "--target-mm": "1.5", "--quantity": "max",
     "--assurance": "0.8", "--minutes": "3", "--poses-at-most": "9", "--robust-to": "2", "--plan": "plan.json", "--drop": "p1",

@@ -8,7 +8,8 @@ namespace posewise::cli {
 namespace {
 
 constexpr auto flags = std::to_array<std::pair<std::string_view, std::string_view>>(
-    {{"count", "--random"},
+    {{"augment_plan", "--augment-plan"},
+     {"count", "--random"},
      {"dropped", "--drop"},
      {"earlier", "--from"},
      {"earlier.has_new_base", "--moved base"},

@@ -49,8 +49,8 @@ std::string describe_unused_planning(const io::CampaignFile& campaign) {
 }
 
 void add_points_options(CLI::App& command, std::string& plan, std::string& points_unit,
-                        const std::string& plan_help) {
-    command.add_option("--plan", plan, plan_help + " (its JSON, or its configurations as CSV)")
+                        const std::string& plan_help, const std::string& plan_option) {
+    command.add_option(plan_option, plan, plan_help + " (its JSON, or its configurations as CSV)")
         ->check(file_name());
     command
         .add_option("--points-unit", points_unit,
@@ -73,10 +73,10 @@ void check_needs_unit(const InputPaths& paths, bool is_joined) {
                          "has units of its own; --points-unit must be left out");
 }
 
-void check_needs_plan(const InputPaths& paths, bool is_joined) {
+void check_needs_plan(const InputPaths& paths, bool is_joined, const std::string& plan_option) {
     if (is_joined || paths.plan.empty()) return;
     throw input_error_at({paths.measurements},
-                         "has joint values of its own; --plan must be left out");
+                         "has joint values of its own; " + plan_option + " must be left out");
 }
 
 io::MeasurementsFile read_as_stated(const std::string& path, const io::CampaignFile& file,

@@ -23,7 +23,7 @@ std::string describe_unused_planning(const io::CampaignFile& campaign);
 
 /// --plan, whose help begins with what else it is for, and --points-unit.
 void add_points_options(CLI::App& command, std::string& plan, std::string& points_unit,
-                        const std::string& plan_help);
+                        const std::string& plan_help, const std::string& plan_option = "--plan");
 
 /// The plan that the paths name, if they do: as plan writes it, JSON or CSV.
 std::optional<Plan> read_measured_plan(const InputPaths& paths, const io::CampaignFile& file);
@@ -49,7 +49,8 @@ io::MeasurementsFile read_measured_without(const std::vector<std::string>& exclu
 /// joined, but has joint values and units of its own: --points-unit and, where it is for nothing
 /// else, --plan.
 void check_needs_unit(const InputPaths& paths, bool is_joined);
-void check_needs_plan(const InputPaths& paths, bool is_joined);
+void check_needs_plan(const InputPaths& paths, bool is_joined,
+                      const std::string& plan_option = "--plan");
 
 /// --exclude, as leave_out() takes it.
 void add_exclude_option(CLI::App& command, std::vector<std::string>& excluded);

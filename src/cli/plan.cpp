@@ -169,7 +169,8 @@ void plan(const PlanArguments& arguments, const CommonOptions& common) {
     const StopSignal stop{interrupted->get(), deadline_after(arguments.request.time_limit)};
     const io::CampaignFile campaign = read_planned(arguments, stop);
     check_outputs({&campaign},
-                  {arguments.earlier.from, sources.augment, sources.repaired, sources.workspace},
+                  {arguments.earlier.from, sources.augment, sources.measured_plan, sources.repaired,
+                   sources.workspace},
                   {out, arguments.csv, arguments.targets, arguments.page, arguments.plot}, common);
     if (!arguments.targets.empty()) detail::check_has_targets(arguments.targets, campaign);
     const PlanRequest request = make_request(arguments);
@@ -210,8 +211,18 @@ void add_plan_problem(CLI::App& command, PlanArguments& problem) {
         "o1, o2, o3, o4, o5, a, d, e, g or v; g and v: worst and mean position error "
         "over the workspace (default: v, with --focus robot d)");
     add_focus_option(command, problem);
-    command.add_option("--augment", sources.augment, "Poses measured already (CSV or .mat): held")
-        ->check(file_name());
+    CLI::Option* const augment =
+        command
+            .add_option("--augment", sources.augment,
+                        "Poses measured already (CSV or .mat; a list of points with "
+                        "--augment-plan): held")
+            ->check(file_name());
+    add_points_options(command, sources.measured_plan, sources.points_unit,
+                       "Plan whose poses --augment, a list of points, was measured at",
+                       "--augment-plan");
+    for (const char* const option : {"--augment-plan", "--points-unit"}) {
+        command.get_option(option)->needs(augment);
+    }
     CLI::Option* const repaired =
         command.add_option("--plan", sources.repaired, "Plan to repair: its poses are held")
             ->check(file_name());

@@ -112,7 +112,12 @@ PlanningOptions read_planning_inputs(const PlanRequest& request, const io::Campa
     PlanningOptions options;
     static_cast<PlanRequest&>(options) = request;
     const PlanSources& sources = request.sources;
-    options.held = read_held(options, campaign);
+    if (const auto held = read_held(options, campaign)) {
+        const InputPaths paths = paths_of(sources.augment, sources);
+        check_needs_unit(paths, held->is_joined);
+        check_needs_plan(paths, held->is_joined, "--augment-plan");
+        options.held = *held;
+    }
     if (!sources.workspace.empty()) {
         options.workspace = io::read_configurations(sources.workspace, campaign).joints;
     }

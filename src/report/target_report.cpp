@@ -161,11 +161,19 @@ const char* name_of(ErrorQuantity quantity) {
 
 std::string describe_duration(const Planning& planning) {
     const Cell& cell = planning.campaign.cell;
-    if (cell.dwell == 0 && cell.settle == 0) return "";
+    std::string by_hand;
+    if (cell.target_change > 0) {
+        by_hand = planning.is_target_changed_at_poses
+                      ? ", the reflector moved to each target at each pose"
+                      : fmt::format(", {} runs, the reflector moved between them",
+                                    planning.campaign.sensor->target_count());
+    }
+    if (cell.stations > 1) by_hand += fmt::format(", all at each of {} stations", cell.stations);
+    if (cell.dwell == 0 && cell.settle == 0 && by_hand.empty()) return "";
     const std::string settle =
         cell.settle > 0 ? format_short(cell.settle) + " s at each pose and " : "";
-    return fmt::format("time:        {} min with {}{} s for each sample\n",
-                       minutes(planning.duration), settle, format_short(cell.dwell));
+    return fmt::format("time:        {} min with {}{} s for each sample{}\n",
+                       minutes(planning.duration), settle, format_short(cell.dwell), by_hand);
 }
 
 std::string describe_drop_outs(const Planning& planning) {

@@ -86,6 +86,17 @@ TEST_F(PlanTarget, DwellIsTimeAtEachPose) {
     write_text("c.yaml", campaign + "cell: {dwell_s: 4}\n");
     const std::string text = run_well("plan c.yaml -k 8 --repeats 2" + quick);
     EXPECT_NE(text.find("min with 4 s for each sample"), std::string::npos) << text;
+    // One reflector for three targets: 30 s by hand at 8 poses take longer than three runs.
+    write_text("c.yaml", campaign +
+                             "cell: {dwell_s: 4, target_change_s: 30, stations: 2, "
+                             "station_change_s: 1200}\n");
+    const std::string by_hand = run_well("plan c.yaml -k 8 --repeats 2" + quick);
+    EXPECT_NE(by_hand.find("s for each sample, 3 runs, the reflector moved between them, all at "
+                           "each of 2 stations\n"),
+              std::string::npos)
+        << by_hand;
+    write_text("c.yaml", campaign + "cell: {stations: 0}\n");
+    expect_input_error("plan c.yaml -k 8" + quick, "stations is 0; must be from 1 to 100");
     write_text("c.yaml", campaign + "cell: {dwell_s: -4}\n");
     expect_input_error("plan c.yaml -k 8" + quick, "dwell_s is -4; must be from 0 to 86400");
 }

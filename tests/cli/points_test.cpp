@@ -216,7 +216,19 @@ TEST_F(Points, AreChosenFromAndCountAsMeasured) {
         "select c.yaml --candidates poses.csv --augment few_table.csv --plan poses.csv -k 6 -o "
         "i.json",
         "few_table.csv: has joint values of its own; --plan must be left out");
-    for (const std::string plan : {"a.json", "c.json", "f.json"})
+    const auto planned = [&](const std::string& augment, const std::string& out) {
+        const Outcome outcome =
+            run("plan c.yaml -k 4 --prior" + quick + "--augment " + augment + " -o " + out);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return Json::parse(text_of(out)).at("poses");
+    };
+    EXPECT_EQ(planned("bare_few.txt --augment-plan poses.csv --points-unit mm", "j.json"),
+              planned("few_table.csv", "k.json"));
+    expect_input_error(
+        "plan c.yaml -k 4 --augment few_table.csv --augment-plan poses.csv -o l.json",
+        "few_table.csv: has joint values of its own; --augment-plan must be left");
+    EXPECT_EQ(run("plan c.yaml -k 4 --augment-plan poses.csv").code, 2);
+    for (const std::string plan : {"a.json", "j.json", "c.json", "f.json"})
         EXPECT_EQ(run("verify " + plan).code, 0);
     run_well("report a.json -o a.html");
     expect_input_error("select c.yaml -m p.csv -k 6 -o f.json", "p.csv");

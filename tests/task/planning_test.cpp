@@ -98,6 +98,30 @@ TEST_F(MakePlan, KeepsSumsOfJointsAtEveryPoseAndOnTheWay) {
     EXPECT_NE(std::find(wrong.begin(), wrong.end(), "poses"), wrong.end());
 }
 
+TEST_F(MakePlan, TakesTheTimeOfWhatIsDoneByHand) {
+    Cell& cell = campaign_.cell;
+    cell.dwell = 2;
+    cell.settle = 1;
+    const Planning once = make_plan(campaign_, options_);
+    EXPECT_NEAR(once.duration, once.tour.time + 4 * 3, 1e-9);
+    const auto time = [&](double target_change) {
+        cell.target_change = target_change;
+        const Planning planning = judge_again(once.plan, campaign_, options_);
+        return std::pair(planning.duration, planning.is_target_changed_at_poses);
+    };
+    const double moves = once.tour.time;
+    EXPECT_EQ(campaign_.sensor->target_count(), 3);
+    const auto [in_runs, at_end] = time(1000);
+    EXPECT_NEAR(in_runs, 3 * once.duration + 2 * 1000, 1e-9);
+    EXPECT_FALSE(at_end);
+    const auto [at_poses, at_each] = time(1e-3);
+    EXPECT_NEAR(at_poses, moves + 4 * (1 + 3 * 2 + 2e-3), 1e-9);
+    EXPECT_TRUE(at_each);
+    cell.stations = 2;
+    cell.station_change = 600;
+    EXPECT_NEAR(time(0).first, 2 * once.duration + 600, 1e-9);
+}
+
 TEST_F(MakePlan, IsJudgedAgainFromWhatItsFileHolds) {
     campaign_.cell.dwell = 2;
     const Planning made = make_plan(campaign_, options_);

@@ -157,6 +157,11 @@ struct Cell {
     VectorXd acceleration;  ///< of each joint, rad/s^2 or m/s^2; empty: infinite
     double dwell = 0;       ///< standstill for each sample, s
     double settle = 0;      ///< standstill before the first sample of a pose, s
+    /// Time to move the one reflector by hand from target to target, s; 0: every target has its
+    /// own.
+    double target_change = 0;
+    Index stations = 1;  ///< places of the instrument, one after the other: all poses at each
+    double station_change = 0;  ///< time to move the instrument to its next place, s
 };
 
 }  // namespace posewise

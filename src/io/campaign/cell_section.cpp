@@ -277,6 +277,16 @@ void read_motion(const YamlMap& map, const Chain& robot, Cell& cell) {
     cell.acceleration = read_rates(map, "acceleration", "s2", robot);
     cell.dwell = read_standstill(map, "dwell_s");
     cell.settle = read_standstill(map, "settle_s");
+    cell.target_change = read_standstill(map, "target_change_s");
+    if (const auto stations = map.find("stations")) {
+        constexpr std::uint64_t most = 100;
+        const std::uint64_t count = stations->natural_number();
+        if (count < 1 || count > most) {
+            throw stations->error("is " + stations->text() + "; must be from 1 to 100");
+        }
+        cell.stations = static_cast<Index>(count);
+    }
+    cell.station_change = read_standstill(map, "station_change_s");
 }
 
 void read_solids(const YamlMap& map, const Chain& robot, Cell& cell) {

@@ -427,6 +427,13 @@ const YamlKeys cell{
          "`0.5`"},
         {"dwell_s", "",
          "how long the robot stands still for each sample, for the time a plan takes", "0", "`4`"},
+        {"target_change_s", "",
+         "how long it takes to move the only reflector by hand to another target, likewise",
+         "0: a reflector each", "`40`"},
+        {"stations", "",
+         "how many places the instrument is set up at; all poses are measured from each", "1",
+         "`2`"},
+        {"station_change_s", "", "how long it takes to set it up at the next", "0", "`1200`"},
     }};
 
 const YamlKeys joint_sum{

@@ -246,8 +246,8 @@ io::MeasurementsFile read_planned_points(const std::string& path, std::string co
     if (source.plan == nullptr) {
         throw error(
             "is a list of points without joint values; must come with the plan whose poses were "
-            "measured (`plan` of calibrate, indices, inspect and study), or be a table with the "
-            "column config");
+            "measured (`plan` of calibrate, indices, inspect, select and study, `augment_plan` of "
+            "plan), or be a table with the column config");
     }
     const Unit* const unit = source.unit.empty() ? nullptr : find_unit(source.unit);
     PointsList list = read_points_list(path, std::move(content), unit);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/decompositions.hpp"
@@ -133,11 +134,26 @@ void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out
     planning.without_each = drop_each(prediction, blocks, planning.information);
     planning.drop_outs = drop_worst(prediction, blocks, drop_out_count, left);
     planning.robot_alone = predict_robot_alone(problem, planning.information);
-    planning.duration = planning.tour.time + standstill(campaign.cell, std::ssize(poses), repeats);
+    const CampaignTime time = campaign_time(problem, planning.tour.time, std::ssize(poses));
+    planning.duration = time.total;
+    planning.is_target_changed_at_poses = time.is_target_changed_at_poses;
 }
 
-double standstill(const Cell& cell, Index poses, double repeats) {
-    return static_cast<double>(poses) * (cell.settle + cell.dwell * repeats);
+CampaignTime campaign_time(const PlanningProblem& problem, double moves, Index poses) {
+    const Cell& cell = problem.campaign.cell;
+    const auto count = static_cast<double>(poses);
+    const double samples = cell.dwell * problem.request.repeats;
+    CampaignTime time{moves + count * (cell.settle + samples), false};
+    if (cell.target_change > 0) {
+        const auto targets = static_cast<double>(problem.campaign.sensor->target_count());
+        const double changes = (targets - 1) * cell.target_change;
+        const double in_runs = targets * time.total + changes;
+        const double at_poses = moves + count * (cell.settle + targets * samples + changes);
+        time = {std::min(in_runs, at_poses), at_poses < in_runs};
+    }
+    const auto stations = static_cast<double>(cell.stations);
+    time.total = stations * time.total + (stations - 1) * cell.station_change;
+    return time;
 }
 
 std::optional<double> value_rms_of(const PlanningProblem& problem, double value) {

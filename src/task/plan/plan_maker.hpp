@@ -12,8 +12,12 @@ namespace posewise::detail {
 /// poses, how long it takes.
 void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out_count);
 
-/// How long the robot stands still at all poses together, s.
-double standstill(const Cell& cell, Index poses, double repeats);
+struct CampaignTime {
+    double total = 0;                         ///< s: moves, standstills and what is done by hand
+    bool is_target_changed_at_poses = false;  ///< see Planning
+};
+/// `moves`: of one run through all poses, s.
+CampaignTime campaign_time(const PlanningProblem& problem, double moves, Index poses);
 
 /// Plan::value_rms of that value.
 std::optional<double> value_rms_of(const PlanningProblem& problem, double value);

@@ -166,10 +166,9 @@ class Search {
         if (!chosen || options_.stop.is_set()) return prediction;
         prediction.error = judge(choices_.information(*chosen), choices_.blocks(*chosen),
                                  choices_.by_noise(*chosen));
-        prediction.duration =
-            detail::straight_tour_time(problem_.constraints,
-                                       maker_.pool().configurations(*chosen, Eigen::all)) +
-            detail::standstill(problem_.campaign.cell, count, problem_.request.repeats);
+        const double moves = detail::straight_tour_time(
+            problem_.constraints, maker_.pool().configurations(*chosen, Eigen::all));
+        prediction.duration = detail::campaign_time(problem_, moves, count).total;
         return prediction;
     }
 
