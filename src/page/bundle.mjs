@@ -9,8 +9,15 @@ const hash = (text) => `'sha256-${createHash('sha256').update(text, 'utf8').dige
 
 async function bundle(entry, options = {}) {
   const { outputFiles } = await build({
-    entryPoints: [entry], absWorkingDir: here('.').pathname, bundle: true, minify: true,
-    write: false, format: 'iife', target: 'es2022', charset: 'utf8', legalComments: 'none',
+    entryPoints: [entry],
+    absWorkingDir: here('.').pathname,
+    bundle: true,
+    minify: true,
+    write: false,
+    format: 'iife',
+    target: 'es2022',
+    charset: 'utf8',
+    legalComments: 'none',
     ...options,
   });
   return outputFiles[0].text.trimEnd();
@@ -20,11 +27,16 @@ const script = await bundle('main.js');
 const style = await bundle('style.css', { format: undefined, target: 'chrome110' });
 if (/<\/(script|style)/i.test(script + style)) throw new Error('ends its own element');
 
-const policy = ["default-src 'none'", `script-src ${hash(script)}`, `style-src ${hash(style)}`,
-  'img-src data: blob:', "base-uri 'none'", "form-action 'none'"].join('; ');
+const policy = [
+  "default-src 'none'",
+  `script-src ${hash(script)}`,
+  `style-src ${hash(style)}`,
+  'img-src data: blob:',
+  "base-uri 'none'",
+  "form-action 'none'",
+].join('; ');
 const licences = ['three', 'uplot']
-  .map((name) => `${name} ${JSON.parse(read(`node_modules/${name}/package.json`)).version}\n\n` +
-    read(`node_modules/${name}/LICENSE`).trim())
+  .map((name) => `${name} ${JSON.parse(read(`node_modules/${name}/package.json`)).version}\n\n` + read(`node_modules/${name}/LICENSE`).trim())
   .join('\n\n');
 if (licences.includes('--')) throw new Error('a licence ends its comment');
 

@@ -18,9 +18,7 @@ import * as readBack from './sections/read_back.js';
 import * as residuals from './sections/residual_plots.js';
 import * as verdict from './sections/verdict.js';
 
-const sections = [
-  verdict, poses, accuracy, blocks, before, map, residuals, parameters, models, coverage, budget, optimality, readBack, measured, printed,
-];
+const sections = [verdict, poses, accuracy, blocks, before, map, residuals, parameters, models, coverage, budget, optimality, readBack, measured, printed];
 
 /** What a document that was edited by hand breaks is said in its place; the rest of the page stands. */
 function renderOf(section, part, parts) {
@@ -37,10 +35,16 @@ function sectionOf(section, parts) {
   if (shown.length === 0) return null;
   const id = section.title.toLowerCase().replace(/[^a-z0-9]+/g, '-');
   const isAlone = parts.length === 1;
-  return el('section', { id, 'aria-labelledby': `${id}-title` },
+  return el(
+    'section',
+    { id, 'aria-labelledby': `${id}-title` },
     el('h2', { id: `${id}-title` }, section.title),
-    el('div', { class: shown.length > 1 ? 'parts parts-beside' : 'parts' }, shown.map(([part, content]) =>
-      el('div', { class: 'part' }, isAlone ? null : el('h3', {}, part.name), content))));
+    el(
+      'div',
+      { class: shown.length > 1 ? 'parts parts-beside' : 'parts' },
+      shown.map(([part, content]) => el('div', { class: 'part' }, isAlone ? null : el('h3', {}, part.name), content)),
+    ),
+  );
 }
 
 /** Residuals with their readings as `rows`; none if the document is not as posewise writes it. */
@@ -55,7 +59,11 @@ function withRows(part) {
 /** Parts with names that differ. */
 function namedParts(document) {
   const parts = (document.parts ?? []).map((part) => ({
-    ...part, residuals: withRows(part), robot: part.document.campaign ?? part.title, title: part.title.replace(/^.*[/\\](?=.)/, ''), file: part.title === part.document.campaign ? null : part.title,
+    ...part,
+    residuals: withRows(part),
+    robot: part.document.campaign ?? part.title,
+    title: part.title.replace(/^.*[/\\](?=.)/, ''),
+    file: part.title === part.document.campaign ? null : part.title,
   }));
   const kindOf = (part) => part.document.kind.replace(/^posewise /, '');
   return parts.map((part, k) => {
@@ -74,7 +82,10 @@ function draw() {
   document.title = `posewise: ${[...new Set(parts.map((part) => part.robot))].join(', ')}`;
   document.body.append(
     el('a', { class: 'skip', href: '#verdict' }, 'Skip to the verdict'),
-    header(page, parts, drawn), el('main', {}, drawn), footer(page, source));
+    header(page, parts, drawn),
+    el('main', {}, drawn),
+    footer(page, source),
+  );
   watchTheme();
   document.documentElement.dataset.drawn = 'true';
 }

@@ -9,10 +9,12 @@ import { pageWith } from './fixture.mjs';
 export const output = process.env.PAGE_TEST_OUTPUT ?? join(tmpdir(), 'posewise_page_test');
 mkdirSync(output, { recursive: true });
 
-export const launch = () => chromium.launch({
-  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', chromiumSandbox: false,
-  args: ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-});
+export const launch = () =>
+  chromium.launch({
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    chromiumSandbox: false,
+    args: ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+  });
 
 /** A page file with these parts in it. */
 export function write(name, document) {
@@ -46,7 +48,8 @@ export async function open(browser, path, { width = 1280, height = 900, scheme =
 }
 
 /** Waits until each 3D view is drawn. */
-export const drawn = (tab) => tab.waitForFunction(() => {
-  const stages = [...document.querySelectorAll('.stage')];
-  return stages.every((stage) => stage.dataset.ready === 'true');
-});
+export const drawn = (tab) =>
+  tab.waitForFunction(() => {
+    const stages = [...document.querySelectorAll('.stage')];
+    return stages.every((stage) => stage.dataset.ready === 'true');
+  });

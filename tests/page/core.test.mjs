@@ -12,13 +12,38 @@ const near = (found, expected, tolerance) => assert.ok(Math.abs(found - expected
 
 test('numbers are as printf writes them', () => {
   // Of %.*f; 0.125, 0.375, 2.5 and 3.5 are ties.
-  for (const [value, decimals, text] of [[0.2317, 4, '0.2317'], [0.125, 2, '0.12'], [0.375, 2, '0.38'], [-0.125, 2, '-0.12'], [2.5, 0, '2'], [3.5, 0, '4'],
-    [1e-9, 4, '0.0000'], [-1e-9, 4, '0.0000'], [-0.00004, 4, '0.0000'], [1234.56785, 4, '1234.5678'], [null, 4, '-'], [Infinity, 2, '-'], [0.5, 0, '0'], [1.5, 0, '2']]) {
+  for (const [value, decimals, text] of [
+    [0.2317, 4, '0.2317'],
+    [0.125, 2, '0.12'],
+    [0.375, 2, '0.38'],
+    [-0.125, 2, '-0.12'],
+    [2.5, 0, '2'],
+    [3.5, 0, '4'],
+    [1e-9, 4, '0.0000'],
+    [-1e-9, 4, '0.0000'],
+    [-0.00004, 4, '0.0000'],
+    [1234.56785, 4, '1234.5678'],
+    [null, 4, '-'],
+    [Infinity, 2, '-'],
+    [0.5, 0, '0'],
+    [1.5, 0, '2'],
+  ]) {
     assert.equal(fixed(value, decimals), text);
   }
   // Of %.*g.
-  for (const [value, digits, text] of [[14084109.49, 8, '14084109'], [0.0001, 6, '0.0001'], [0.00001234, 3, '1.23e-05'], [1e21, 6, '1e+21'], [123456789, 4, '1.235e+08'],
-    [0.9668, 4, '0.9668'], [100, 6, '100'], [999999.5, 6, '1e+06'], [0, 6, '0'], [-Infinity, 6, '-inf'], [0.1, 1, '0.1']]) {
+  for (const [value, digits, text] of [
+    [14084109.49, 8, '14084109'],
+    [0.0001, 6, '0.0001'],
+    [0.00001234, 3, '1.23e-05'],
+    [1e21, 6, '1e+21'],
+    [123456789, 4, '1.235e+08'],
+    [0.9668, 4, '0.9668'],
+    [100, 6, '100'],
+    [999999.5, 6, '1e+06'],
+    [0, 6, '0'],
+    [-Infinity, 6, '-inf'],
+    [0.1, 1, '0.1'],
+  ]) {
     assert.equal(short(value, digits), text);
   }
 });
@@ -53,7 +78,10 @@ test('the curve of a plan ends at its floor', () => {
 test('parameters of an estimate have their values and correlations', () => {
   const { document } = makeEstimate({ errors: 3 });
   const list = parametersOf(document);
-  assert.deepEqual(list.map((one) => one.name), document.covariance.parameters);
+  assert.deepEqual(
+    list.map((one) => one.name),
+    document.covariance.parameters,
+  );
   // Half a turn about z, as a rotation vector.
   near(list[5].value, Math.PI, 1e-12);
   assert.equal(list[5].isAngle, true);
@@ -66,7 +94,10 @@ test('parameters of an estimate have their values and correlations', () => {
 
 test('correlations stand in blocks: base, joints along the chain, targets', () => {
   const parameters = ['target1.x', 'base.x', 'Tz2', 'q1.cos', 'dq2', 'dq1'];
-  const chain = { elements: [{ joints: { q1: 1 }, error: 'dq1' }, { joints: { q2: 1 }, error: 'dq2' }, { error: 'Tz2' }], terms: [{ name: 'q1.cos', sine_of: { q1: 1 } }] };
+  const chain = {
+    elements: [{ joints: { q1: 1 }, error: 'dq1' }, { joints: { q2: 1 }, error: 'dq2' }, { error: 'Tz2' }],
+    terms: [{ name: 'q1.cos', sine_of: { q1: 1 } }],
+  };
   const rows = parameters.map((unused, i) => parameters.slice(0, i + 1).map((none, j) => (i === j ? 1 : (10 * i + j) / 100)));
   const { names, blocks, at } = correlationsOf({ covariance: { parameters, rows_si: rows }, chain, robot: { Tz2: {}, 'q1.cos': {}, dq1: {}, dq2: {} } });
   assert.deepEqual(names, ['base.x', 'q1.cos', 'dq1', 'Tz2', 'dq2', 'target1.x']);

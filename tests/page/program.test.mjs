@@ -13,7 +13,23 @@ const root = fileURLToPath(new URL('../../', import.meta.url));
 const fanuc = ['designs/fanuc_r2000ic_165f/campaign.yaml', '-m', 'data/fanuc_r2000ic_165f_simulated/measurements.csv'];
 
 const commands = {
-  plan: ['plan', 'designs/cell_demo/campaign.yaml', '--poses', '8', '--pool', '600', '--starts', '1', '--workspace-poses', '100', '--verify', '--verify-robots', '100', '--out', join(output, 'plan.json')],
+  plan: [
+    'plan',
+    'designs/cell_demo/campaign.yaml',
+    '--poses',
+    '8',
+    '--pool',
+    '600',
+    '--starts',
+    '1',
+    '--workspace-poses',
+    '100',
+    '--verify',
+    '--verify-robots',
+    '100',
+    '--out',
+    join(output, 'plan.json'),
+  ],
   calibrate: ['calibrate', ...fanuc, '--folds', '5', '--out', join(output, 'estimate.json')],
   study: ['study', ...fanuc, '--poses', '8,12', '--random', '10', '--splits', '2'],
   select: ['select', ...fanuc, '--poses', '12', '--starts', '1', '--out', join(output, 'choice.json')],
@@ -47,14 +63,26 @@ function printedTables(text) {
     });
     const cells = (row) => columns.map(([from, to], c) => row.slice(from, c === columns.length - 1 ? undefined : to).trim());
     const end = lines.findIndex((row, i) => i > k && row.trim() === '');
-    return [{ header: cells(lines[k - 1]), rows: lines.slice(k + 1, end < 0 ? undefined : end).filter((row) => !row.includes(';')).map(cells) }];
+    return [
+      {
+        header: cells(lines[k - 1]),
+        rows: lines
+          .slice(k + 1, end < 0 ? undefined : end)
+          .filter((row) => !row.includes(';'))
+          .map(cells),
+      },
+    ];
   });
 }
 
 /** Tables of the page likewise. */
-const shownTables = (tab) => tab.evaluate(() => [...document.querySelectorAll('.scroll > table')].map((one) => ({
-  header: [...one.tHead.rows[0].cells].map((cell) => cell.textContent), rows: [...one.tBodies[0].rows].map((row) => [...row.cells].map((cell) => cell.textContent)),
-})));
+const shownTables = (tab) =>
+  tab.evaluate(() =>
+    [...document.querySelectorAll('.scroll > table')].map((one) => ({
+      header: [...one.tHead.rows[0].cells].map((cell) => cell.textContent),
+      rows: [...one.tBodies[0].rows].map((row) => [...row.cells].map((cell) => cell.textContent)),
+    })),
+  );
 
 /** Where the page has a printed table: some columns more, or rows in it that are printed. */
 function holds(shown, printed) {
@@ -79,14 +107,19 @@ for (const [name, words] of Object.entries(commands)) {
     const tables = printedTables(printed);
     assert.equal(tables.length, printedCount[name]);
     const shown = await shownTables(tab);
-    for (const table of tables) assert.ok(holds(shown, table), `not on the page: ${table.header.join(' | ')}\n${table.rows.map((row) => row.join(' | ')).join('\n')}`);
+    for (const table of tables)
+      assert.ok(holds(shown, table), `not on the page: ${table.header.join(' | ')}\n${table.rows.map((row) => row.join(' | ')).join('\n')}`);
     if (name === 'calibrate') {
       // The residuals behind the figures are those of the table.
       const accuracy = shown.find(({ header }) => header[0] === 'error/mm');
       const readings = shown.find(({ header }) => header[0] === 'of' && header[1] === 'readings');
       for (const [of, , rms, , p95, most] of readings.rows) {
         const column = accuracy.header.indexOf(of);
-        assert.deepEqual([rms, p95, most], ['distance RMS', 'distance 95 %', 'distance max'].map((row) => accuracy.rows.find((one) => one[0] === row)[column]), of);
+        assert.deepEqual(
+          [rms, p95, most],
+          ['distance RMS', 'distance 95 %', 'distance max'].map((row) => accuracy.rows.find((one) => one[0] === row)[column]),
+          of,
+        );
       }
       assert.equal(readings.rows.length, 3);
     }
@@ -107,7 +140,10 @@ test('exported files', { skip: program ? false : 'POSEWISE_PROGRAM is not set' }
   const { tab, complaints, close } = await open(browser, path);
   await drawn(tab);
   assert.match(await tab.locator('.verdict').textContent(), /^1 file written and read back: the flange is where it should be within \d/);
-  assert.deepEqual(await tab.locator('#exported-files-read-back tbody tr:last-child td:first-child, #exported-files-read-back tbody tr:last-child th').first().textContent(), dh);
+  assert.deepEqual(
+    await tab.locator('#exported-files-read-back tbody tr:last-child td:first-child, #exported-files-read-back tbody tr:last-child th').first().textContent(),
+    dh,
+  );
   assert.deepEqual(complaints, []);
   await close();
 });

@@ -15,5 +15,8 @@ test('an export is summed up by how well its files read back', () => {
   const lost = { nominal: { rms_mm: 2 }, estimate: { rms_mm: 0.5, largest_mm: 1 } };
   const [first, ...others] = answerExport({ geometry: 'estimate', lost, not_exported: ['q1.sin'], read_back: [{ path: 'a.yaml', position_m: 1e-12 }] });
   assert.equal(first.text, '1 file written and read back: the flange is where it should be within 1e-12 m');
-  assert.deepEqual(others.map(({ question }) => question), ['Files', 'Geometry', 'Not in the files', 'Lost by that']);
+  assert.deepEqual(
+    others.map(({ question }) => question),
+    ['Files', 'Geometry', 'Not in the files', 'Lost by that'],
+  );
 });

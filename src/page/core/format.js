@@ -16,7 +16,7 @@ export function fixed(value, decimals) {
     const last = text[text.length - 1];
     if (Number(last) % 2 === 1) {
       const unit = 10 ** -decimals;
-      text = (value - Math.sign(value) * unit / 4).toFixed(decimals);
+      text = (value - (Math.sign(value) * unit) / 4).toFixed(decimals);
     }
   }
   return /[1-9]/.test(text) || text[0] !== '-' ? text : text.slice(1);

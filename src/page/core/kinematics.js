@@ -12,8 +12,7 @@ export function multiply(a, b) {
   return c;
 }
 
-export const apply = (m, [x, y, z]) =>
-  [0, 4, 8].map((i) => m[i] * x + m[i + 1] * y + m[i + 2] * z + m[i + 3]);
+export const apply = (m, [x, y, z]) => [0, 4, 8].map((i) => m[i] * x + m[i + 1] * y + m[i + 2] * z + m[i + 3]);
 
 export const origin = (m) => [m[3], m[7], m[11]];
 
@@ -38,8 +37,7 @@ export function elementary(motion, amount) {
 export function frames(scene, joints) {
   const list = [scene.world_from_base];
   for (const element of scene.elements) {
-    const amount = element.joints.reduce(
-      (sum, one) => sum + one.coefficient * joints[one.joint], element.amount);
+    const amount = element.joints.reduce((sum, one) => sum + one.coefficient * joints[one.joint], element.amount);
     list.push(multiply(list[list.length - 1], elementary(element.motion, amount)));
   }
   return list;

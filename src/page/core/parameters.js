@@ -41,7 +41,11 @@ export function parametersOf(document) {
     const isAngle = robot ? 'value_rad' in robot : unitOf(keys, name) === 'rad';
     const suffix = isAngle ? 'rad' : 'm';
     return {
-      name, isAngle, isRobot: Boolean(robot), isHeld: held.has(name), value: values.get(name) ?? null,
+      name,
+      isAngle,
+      isRobot: Boolean(robot),
+      isHeld: held.has(name),
+      value: values.get(name) ?? null,
       sigma: robot ? robot[`sigma_${suffix}`] : document.sigma?.[`${name}_${suffix}`],
       expected: robot ? robot[`expected_${suffix}`] : document.assumes?.expected_error?.[`${name}_${suffix}`],
     };
@@ -68,10 +72,12 @@ export function correlationsOf({ covariance, chain, robot }) {
   if (!covariance?.rows_si?.length) return null;
   const rows = covariance.rows_si;
   const { joints, list } = jointsOf(chain ?? {});
-  const named = covariance.parameters.map((name, k) => {
-    const block = list.get(name) ?? (robot && name in robot ? 'robot' : name.replace(/\.[^.]*$/, ''));
-    return { name, k, block, rank: block === 'base' ? -1 : joints.includes(block) ? joints.indexOf(block) : joints.length };
-  }).sort((a, b) => a.rank - b.rank || a.k - b.k);
+  const named = covariance.parameters
+    .map((name, k) => {
+      const block = list.get(name) ?? (robot && name in robot ? 'robot' : name.replace(/\.[^.]*$/, ''));
+      return { name, k, block, rank: block === 'base' ? -1 : joints.includes(block) ? joints.indexOf(block) : joints.length };
+    })
+    .sort((a, b) => a.rank - b.rank || a.k - b.k);
   const order = named.map((one) => one.k);
   const sigma = rows.map((row, k) => Math.sqrt(row[k]));
   const at = (first, second) => {

@@ -3,8 +3,13 @@
 import { fixed, reading, splitUnit } from './format.js';
 
 /** Names of sockets that poses touch, in their order, by the parameters of a plan; empty of other sensors. */
-const socketsOf = ({ predicted }) =>
-  [...new Set(Object.keys(predicted?.standard_deviation ?? {}).map((key) => /^socket\.(.+)\.[^.]+$/.exec(key)?.[1]).filter(Boolean))];
+const socketsOf = ({ predicted }) => [
+  ...new Set(
+    Object.keys(predicted?.standard_deviation ?? {})
+      .map((key) => /^socket\.(.+)\.[^.]+$/.exec(key)?.[1])
+      .filter(Boolean),
+  ),
+];
 
 function planned(document, poses) {
   const sockets = socketsOf(document);
@@ -13,12 +18,19 @@ function planned(document, poses) {
     const keys = Object.keys(pose.joints);
     const drawn = keys.filter((key) => splitUnit(key).unit !== 'Nm');
     return {
-      id: pose.id, times: pose.times, keys, all: keys.map((key) => pose.joints[key]),
+      id: pose.id,
+      times: pose.times,
+      keys,
+      all: keys.map((key) => pose.joints[key]),
       joints: drawn.map((key) => pose.joints[key]),
       via: pose.via ? drawn.map((key) => pose.via[key]) : null,
-      clearance: pose.clearance_m, nearest: typeof pose.clearance_m === 'number' ? `${fixed(1e3 * pose.clearance_m, 2)} ${pose.nearest.join(' to ')}` : null,
-      blocked: pose.way_is_blocked, kept: pose.kept, hasWay: 'via' in pose,
-      value: values.get(pose.id), targets: sockets.length > 0 ? null : pose.visible_targets ?? null,
+      clearance: pose.clearance_m,
+      nearest: typeof pose.clearance_m === 'number' ? `${fixed(1e3 * pose.clearance_m, 2)} ${pose.nearest.join(' to ')}` : null,
+      blocked: pose.way_is_blocked,
+      kept: pose.kept,
+      hasWay: 'via' in pose,
+      value: values.get(pose.id),
+      targets: sockets.length > 0 ? null : (pose.visible_targets ?? null),
       touched: sockets.length > 0 ? (pose.visible_targets ?? []).map((number) => sockets[number - 1] ?? number) : null,
     };
   });
@@ -31,11 +43,16 @@ function planned(document, poses) {
 export function posesOf(part) {
   const { document, scene } = part;
   if (document.poses?.length > 0 && document.poses[0].joints) return planned(document, document.poses);
-  const keys = (scene?.joints ?? []).map((joint) =>
-    `${joint.name}_${joint.kind === 'prismatic' ? 'm' : 'rad'}`);
+  const keys = (scene?.joints ?? []).map((joint) => `${joint.name}_${joint.kind === 'prismatic' ? 'm' : 'rad'}`);
   const measured = (scene && part.configurations) || { id: [], joints: [] };
   return measured.joints.map((joints, k) => ({
-    id: measured.id[k], keys, all: joints, joints: joints.slice(0, keys.length), via: null, targets: null, times: 1,
+    id: measured.id[k],
+    keys,
+    all: joints,
+    joints: joints.slice(0, keys.length),
+    via: null,
+    targets: null,
+    times: 1,
   }));
 }
 

@@ -4,13 +4,20 @@
 const axesOf = (columns, k, factor) => columns.map((column) => (column[k] === null ? null : column[k] * factor));
 
 /** Of other poses: target and values of each reading, mm and mrad. */
-export const readingsOf = ({ targets, readings }, key) => readings.target.map((target, k) => ({ target: targets[target], values: axesOf(readings[key], k, 1e-6) }));
+export const readingsOf = ({ targets, readings }, key) =>
+  readings.target.map((target, k) => ({ target: targets[target], values: axesOf(readings[key], k, 1e-6) }));
 
 /** Readings as rows, residuals in mm and mrad; `joints` are those of the configuration. */
 export function rowsOf({ residuals: { targets, readings }, configurations }) {
   return readings.configuration.map((c, k) => {
     const [id, joints] = [configurations.id[c], configurations.joints[c]];
-    const row = { configuration: id, joints, sample: readings.sample[k], target: targets[readings.target[k]], standardised: axesOf(readings.standardised, k, 1) };
+    const row = {
+      configuration: id,
+      joints,
+      sample: readings.sample[k],
+      target: targets[readings.target[k]],
+      standardised: axesOf(readings.standardised, k, 1),
+    };
     for (const key of ['residual', 'nominal', 'held_out']) if (typeof readings[key]?.[0][k] === 'number') row[key] = axesOf(readings[key], k, 1e-6);
     for (const key of ['range', 'azimuth', 'elevation']) if (typeof readings[key]?.[k] === 'number') row[key] = readings[key][k];
     return row;

@@ -5,8 +5,7 @@ export const mean = (values) => values.reduce((sum, value) => sum + value, 0) / 
 export const rms = (values) => Math.sqrt(mean(values.map((value) => value * value)));
 
 /** The least value that part p of them do not exceed: as errors of readings are stated. */
-export const lowerQuantile = (values, p) =>
-  Float64Array.from(values).sort()[Math.max(0, Math.min(values.length - 1, Math.ceil(p * values.length) - 1))];
+export const lowerQuantile = (values, p) => Float64Array.from(values).sort()[Math.max(0, Math.min(values.length - 1, Math.ceil(p * values.length) - 1))];
 
 /** Between order statistics: p of 0..1 of values in any order. */
 export function quantile(values, p) {
@@ -26,11 +25,15 @@ export function normalQuantile(p) {
   if (p > 1 - tail) return -normalQuantile(1 - p);
   if (p < tail) {
     const q = Math.sqrt(-2 * Math.log(p));
-    return polynomial([-7.784894002430293e-3, -0.3223964580411365, -2.400758277161838, -2.549732539343734, 4.374664141464968, 2.938163982698783], q) /
-      polynomial([7.784695709041462e-3, 0.3224671290700398, 2.445134137142996, 3.754408661907416, 1], q);
+    return (
+      polynomial([-7.784894002430293e-3, -0.3223964580411365, -2.400758277161838, -2.549732539343734, 4.374664141464968, 2.938163982698783], q) /
+      polynomial([7.784695709041462e-3, 0.3224671290700398, 2.445134137142996, 3.754408661907416, 1], q)
+    );
   }
   const q = p - 0.5;
   const r = q * q;
-  return (q * polynomial([-39.69683028665376, 220.9460984245205, -275.9285104469687, 138.357751867269, -30.66479806614716, 2.506628277459239], r)) /
-    polynomial([-54.47609879822406, 161.5858368580409, -155.6989798598866, 66.80131188771972, -13.28068155288572, 1], r);
+  return (
+    (q * polynomial([-39.69683028665376, 220.9460984245205, -275.9285104469687, 138.357751867269, -30.66479806614716, 2.506628277459239], r)) /
+    polynomial([-54.47609879822406, 161.5858368580409, -155.6989798598866, 66.80131188771972, -13.28068155288572, 1], r)
+  );
 }

@@ -25,7 +25,10 @@ export const isOnPaper = () => document.documentElement.classList.contains('on-p
 /** Draws all again as wide as paper is while the page is printed. */
 export function watchTheme() {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
-  for (const [event, isPrinting] of [['beforeprint', true], ['afterprint', false]]) {
+  for (const [event, isPrinting] of [
+    ['beforeprint', true],
+    ['afterprint', false],
+  ]) {
     addEventListener(event, () => {
       document.documentElement.classList.toggle('on-paper', isPrinting);
       redraw();
@@ -33,8 +36,9 @@ export function watchTheme() {
   }
 }
 
-const scale = ['#440154', '#472d7b', '#3b528b', '#2c728e', '#21918c', '#28ae80', '#5ec962', '#addc30', '#fde725']
-  .map((text) => [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16)));
+const scale = ['#440154', '#472d7b', '#3b528b', '#2c728e', '#21918c', '#28ae80', '#5ec962', '#addc30', '#fde725'].map((text) =>
+  [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16)),
+);
 
 /** A perceptually even colour of 0..1, as "rgb(r, g, b)", of those that can be told from the paper. */
 export function ramp(part) {

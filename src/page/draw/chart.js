@@ -8,28 +8,41 @@ const font = '12px system-ui, sans-serif';
 
 function axis(label, values) {
   return {
-    label, labelFont: `12px system-ui, sans-serif`, font, labelSize: 20, stroke: () => colour('ink-soft'),
-    grid: { stroke: () => colour('rule'), width: 1 }, ticks: { stroke: () => colour('rule'), width: 1, size: 4 },
+    label,
+    labelFont: `12px system-ui, sans-serif`,
+    font,
+    labelSize: 20,
+    stroke: () => colour('ink-soft'),
+    grid: { stroke: () => colour('rule'), width: 1 },
+    ticks: { stroke: () => colour('rule'), width: 1, size: 4 },
     ...values,
   };
 }
 
 const fade = (name, alpha) => {
   const value = colour(name);
-  return `${value}${Math.round(alpha * 255).toString(16).padStart(2, '0')}`;
+  return `${value}${Math.round(alpha * 255)
+    .toString(16)
+    .padStart(2, '0')}`;
 };
 
 function seriesOf(one) {
   const stroke = () => colour(one.colour);
   const isDots = one.kind === 'dots';
   return {
-    label: one.label, stroke, width: isDots ? 0 : one.width ?? 2, dash: one.dash, spanGaps: true,
-    points: {
-      show: isDots || one.kind === 'both', size: one.size ?? 7, fill: one.open ? () => colour('paper') : stroke, stroke,
-      width: one.open ? 1.5 : 0,
-    },
-    paths: isDots ? () => null : one.kind === 'steps' ? uPlot.paths.stepped({ align: 1 })
-      : one.kind === 'bars' ? uPlot.paths.bars({ size: [1, Infinity], align: 1, gap: 1 }) : undefined,
+    label: one.label,
+    stroke,
+    width: isDots ? 0 : (one.width ?? 2),
+    dash: one.dash,
+    spanGaps: true,
+    points: { show: isDots || one.kind === 'both', size: one.size ?? 7, fill: one.open ? () => colour('paper') : stroke, stroke, width: one.open ? 1.5 : 0 },
+    paths: isDots
+      ? () => null
+      : one.kind === 'steps'
+        ? uPlot.paths.stepped({ align: 1 })
+        : one.kind === 'bars'
+          ? uPlot.paths.bars({ size: [1, Infinity], align: 1, gap: 1 })
+          : undefined,
     fill: one.kind === 'bars' ? () => fade(one.colour, 0.45) : undefined,
   };
 }
@@ -51,9 +64,12 @@ export function legend(series, bands = []) {
     key.style.setProperty('--key', `var(--${name})`);
     return el('li', {}, key, label);
   };
-  return el('ul', { class: 'legend' },
+  return el(
+    'ul',
+    { class: 'legend' },
     bands.map((one) => item('band', one.colour, one.label)),
-    series.filter((one) => one.label).map((one) => item(one.kind ?? 'line', one.colour, one.label, one.dash)));
+    series.filter((one) => one.label).map((one) => item(one.kind ?? 'line', one.colour, one.label, one.dash)),
+  );
 }
 
 /**
@@ -68,19 +84,35 @@ export function chart({ label, x, y, xs, series, bands = [], height = 300, hasLe
   const all = [...hidden, ...series];
   const xRange = x.range ?? span(xs, x.margin ?? 0.04);
   const values = all.flatMap((one) => one.values).filter((value) => Number.isFinite(value) && (!y.log || value > 0));
-  const yRange = y.range ?? (y.log ? [Math.min(...values) / 1.15, Math.max(...values) * 1.15]
-    : [y.zero ? 0 : span(values)[0], span(values)[1]]);
+  const yRange = y.range ?? (y.log ? [Math.min(...values) / 1.15, Math.max(...values) * 1.15] : [y.zero ? 0 : span(values)[0], span(values)[1]]);
   const part = (value) => (x.log ? Math.log(value / xRange[0]) / Math.log(xRange[1] / xRange[0]) : (value - xRange[0]) / (xRange[1] - xRange[0]));
-  const xTicks = (u) => apart(x.ticks ?? ticks(...xRange, Math.max(4, u.width / 90)), (value) => part(value) * (u.width - 100), (value) => 7 * short(value, 4).length);
+  const xTicks = (u) =>
+    apart(
+      x.ticks ?? ticks(...xRange, Math.max(4, u.width / 90)),
+      (value) => part(value) * (u.width - 100),
+      (value) => 7 * short(value, 4).length,
+    );
   const options = {
-    width: 600, height, legend: { show: false }, cursor: { show: false }, select: { show: false },
+    width: 600,
+    height,
+    legend: { show: false },
+    cursor: { show: false },
+    select: { show: false },
     padding: [10, 14, 0, 4],
     scales: { x: { time: false, range: () => xRange, distr: x.log ? 3 : 1 }, y: { range: () => yRange, distr: y.log ? 3 : 1 } },
     axes: [
-      axis(x.label, { size: 26, splits: xTicks, ...(x.log ? { filter: (u, splits) => splits } : {}), values: (u, splits) => splits.map((value) => (value === null ? '' : short(value, 4))) }),
-      axis(y.label, { size: 62, splits: () => (y.log ? logTicks(...yRange) : ticks(...yRange, 6)),
+      axis(x.label, {
+        size: 26,
+        splits: xTicks,
+        ...(x.log ? { filter: (u, splits) => splits } : {}),
+        values: (u, splits) => splits.map((value) => (value === null ? '' : short(value, 4))),
+      }),
+      axis(y.label, {
+        size: 62,
+        splits: () => (y.log ? logTicks(...yRange) : ticks(...yRange, 6)),
         ...(y.log ? { filter: (u, splits) => splits } : {}),
-        values: (u, splits) => splits.map((value) => (value === null ? '' : short(value, 4))) }),
+        values: (u, splits) => splits.map((value) => (value === null ? '' : short(value, 4))),
+      }),
     ],
     series: [{}, ...all.map((one) => (one.label === undefined ? { ...seriesOf(one), points: { show: false } } : seriesOf(one)))],
     bands: bands.map((one, k) => ({ series: [2 * k + 1, 2 * k + 2], fill: () => fade(one.colour, one.alpha ?? 0.22) })),

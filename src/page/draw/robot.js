@@ -16,12 +16,14 @@ export class Robot {
   }
 
   addLinks(size) {
-    this.links = (this.scene.capsules ?? []).filter((one) => one.kind === 'link').map((one) => {
-      const holder = new Group();
-      holder.add(capsule(one.from, one.to, one.radius, this.materials.link));
-      this.group.add(holder);
-      return { holder, after: one.after_element };
-    });
+    this.links = (this.scene.capsules ?? [])
+      .filter((one) => one.kind === 'link')
+      .map((one) => {
+        const holder = new Group();
+        holder.add(capsule(one.from, one.to, one.radius, this.materials.link));
+        this.group.add(holder);
+        return { holder, after: one.after_element };
+      });
     const radius = this.links.length > 0 ? 0.012 * size : 0.026 * size;
     this.rods = [];
     this.scene.elements.forEach((element, k) => {

@@ -9,8 +9,8 @@ export function sliced(points, most) {
   const count = Math.max(1, Math.min(most, Math.floor(points.length / 30)));
   const sorted = [...points].sort((a, b) => a.at[2] - b.at[2]);
   return Array.from({ length: count }, (unused, k) =>
-    sorted.slice(Math.round((k * sorted.length) / count), Math.round(((k + 1) * sorted.length) / count)))
-    .filter((slice) => slice.length > 0);
+    sorted.slice(Math.round((k * sorted.length) / count), Math.round(((k + 1) * sorted.length) / count)),
+  ).filter((slice) => slice.length > 0);
 }
 
 /** Value at a place: mean of the points around with weights that fall as a bell; null far from all. */
@@ -95,22 +95,26 @@ export function drawSlices(description, slices, paint) {
     const size = Math.floor(Math.min(width / columns - gap - 6, 400));
     return { columns, size, tall: (size * (ys[1] - ys[0])) / (xs[1] - xs[0]) + 56 };
   };
-  return drawing(description, (width) => {
-    const { columns, tall } = layout(width);
-    return Math.ceil(slices.length / columns) * tall + 16;
-  }, (context, width, height) => {
-    const { columns, size, tall } = layout(width);
-    slices.forEach((slice, k) => {
-      const left = Math.round((k % columns) * (size + gap + 6) + gap - 4);
-      const top = Math.round(Math.floor(k / columns) * tall + 22);
-      const heights = slice.map(({ at }) => at[2]);
-      context.fillStyle = colour('ink');
-      context.textAlign = 'left';
-      context.fillText(`z ${fixed(Math.min(...heights), 2)} to ${fixed(Math.max(...heights), 2)} m`, left, top - 7);
-      drawSlice(context, slice, { left, top, size, xs, ys, reach, paint });
-    });
-    context.fillStyle = colour('ink-soft');
-    context.textAlign = 'center';
-    context.fillText('x/m across, y/m up; the cross is the robot\u2019s base', width / 2, height - 3, width);
-  }).element;
+  return drawing(
+    description,
+    (width) => {
+      const { columns, tall } = layout(width);
+      return Math.ceil(slices.length / columns) * tall + 16;
+    },
+    (context, width, height) => {
+      const { columns, size, tall } = layout(width);
+      slices.forEach((slice, k) => {
+        const left = Math.round((k % columns) * (size + gap + 6) + gap - 4);
+        const top = Math.round(Math.floor(k / columns) * tall + 22);
+        const heights = slice.map(({ at }) => at[2]);
+        context.fillStyle = colour('ink');
+        context.textAlign = 'left';
+        context.fillText(`z ${fixed(Math.min(...heights), 2)} to ${fixed(Math.max(...heights), 2)} m`, left, top - 7);
+        drawSlice(context, slice, { left, top, size, xs, ys, reach, paint });
+      });
+      context.fillStyle = colour('ink-soft');
+      context.textAlign = 'center';
+      context.fillText('x/m across, y/m up; the cross is the robot\u2019s base', width / 2, height - 3, width);
+    },
+  ).element;
 }

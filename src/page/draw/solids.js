@@ -1,7 +1,21 @@
 import {
-  BoxGeometry, BufferGeometry, CapsuleGeometry, CylinderGeometry, DoubleSide, EdgesGeometry, Float32BufferAttribute,
-  Group, LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshLambertMaterial, PlaneGeometry, Quaternion,
-  SphereGeometry, Vector3,
+  BoxGeometry,
+  BufferGeometry,
+  CapsuleGeometry,
+  CylinderGeometry,
+  DoubleSide,
+  EdgesGeometry,
+  Float32BufferAttribute,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Matrix4,
+  Mesh,
+  MeshLambertMaterial,
+  PlaneGeometry,
+  Quaternion,
+  SphereGeometry,
+  Vector3,
 } from 'three';
 
 const upright = new Vector3(0, 1, 0);
@@ -19,11 +33,17 @@ export function place(object, rows) {
 export function makeMaterials() {
   const solid = (options) => new MeshLambertMaterial(options);
   return {
-    link: solid({}), joint: solid({}), instrument: solid({}), seen: solid({}), unseen: solid({}),
+    link: solid({}),
+    joint: solid({}),
+    instrument: solid({}),
+    seen: solid({}),
+    unseen: solid({}),
     obstacle: solid({ transparent: true, opacity: 0.55 }),
     wall: solid({ transparent: true, opacity: 0.12, side: DoubleSide, depthWrite: false }),
-    edge: new LineBasicMaterial({}), faint: new LineBasicMaterial({ transparent: true, opacity: 0.5 }),
-    sight: new LineBasicMaterial({}), way: new LineBasicMaterial({ transparent: true, opacity: 0.6 }),
+    edge: new LineBasicMaterial({}),
+    faint: new LineBasicMaterial({ transparent: true, opacity: 0.5 }),
+    sight: new LineBasicMaterial({}),
+    way: new LineBasicMaterial({ transparent: true, opacity: 0.6 }),
   };
 }
 
@@ -31,8 +51,7 @@ export function makeMaterials() {
 export function capsule(from, to, radius, material) {
   const [a, b] = [new Vector3(...from), new Vector3(...to)];
   const length = a.distanceTo(b);
-  const mesh = new Mesh(
-    length > 1e-9 ? new CapsuleGeometry(radius, length, 8, 24) : new SphereGeometry(radius, 24, 16), material);
+  const mesh = new Mesh(length > 1e-9 ? new CapsuleGeometry(radius, length, 8, 24) : new SphereGeometry(radius, 24, 16), material);
   mesh.position.copy(a).add(b).multiplyScalar(0.5);
   if (length > 1e-9) mesh.quaternion.copy(new Quaternion().setFromUnitVectors(upright, b.sub(a).normalize()));
   return mesh;
@@ -80,9 +99,20 @@ export function lines(points, material) {
 /** Three coloured axes. */
 export function axes(size) {
   const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new Float32BufferAttribute(
-    [0, 0, 0, size, 0, 0, 0, 0, 0, 0, size, 0, 0, 0, 0, 0, 0, size], 3));
-  geometry.setAttribute('color', new Float32BufferAttribute(
-    [[0.85, 0.2, 0.2], [0.85, 0.2, 0.2], [0.2, 0.65, 0.2], [0.2, 0.65, 0.2], [0.25, 0.45, 0.95], [0.25, 0.45, 0.95]].flat(), 3));
+  geometry.setAttribute('position', new Float32BufferAttribute([0, 0, 0, size, 0, 0, 0, 0, 0, 0, size, 0, 0, 0, 0, 0, 0, size], 3));
+  geometry.setAttribute(
+    'color',
+    new Float32BufferAttribute(
+      [
+        [0.85, 0.2, 0.2],
+        [0.85, 0.2, 0.2],
+        [0.2, 0.65, 0.2],
+        [0.2, 0.65, 0.2],
+        [0.25, 0.45, 0.95],
+        [0.25, 0.45, 0.95],
+      ].flat(),
+      3,
+    ),
+  );
   return new LineSegments(geometry, new LineBasicMaterial({ vertexColors: true, depthTest: false }));
 }

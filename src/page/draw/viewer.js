@@ -1,6 +1,19 @@
 import {
-  Box3, Color, DirectionalLight, HemisphereLight, InstancedMesh, Line, Matrix4, MeshBasicMaterial, OrthographicCamera, PerspectiveCamera,
-  Scene, SphereGeometry, Vector3, WebGLRenderer, BufferGeometry,
+  Box3,
+  Color,
+  DirectionalLight,
+  HemisphereLight,
+  InstancedMesh,
+  Line,
+  Matrix4,
+  MeshBasicMaterial,
+  OrthographicCamera,
+  PerspectiveCamera,
+  Scene,
+  SphereGeometry,
+  Vector3,
+  WebGLRenderer,
+  BufferGeometry,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { el } from '../core/dom.js';
@@ -13,8 +26,17 @@ import { Robot } from './robot.js';
 import { lines, makeMaterials } from './solids.js';
 
 const palette = {
-  link: 'robot', joint: 'robot-joint', instrument: 'ink', seen: 'accent', unseen: 'muted', obstacle: 'obstacle',
-  wall: 'obstacle', edge: 'muted', faint: 'rule', sight: 'accent', way: 'muted',
+  link: 'robot',
+  joint: 'robot-joint',
+  instrument: 'ink',
+  seen: 'accent',
+  unseen: 'muted',
+  obstacle: 'obstacle',
+  wall: 'obstacle',
+  edge: 'muted',
+  faint: 'rule',
+  sight: 'accent',
+  way: 'muted',
 };
 
 /** A canvas with a WebGL 2 context; null where there is none. */
@@ -64,9 +86,15 @@ export class Viewer {
   measure() {
     const places = this.poses.flatMap((pose) => frames(this.data, pose.joints).map(origin));
     this.near = places.map((place) => new Vector3(...place));
-    const others = [this.data.instrument?.position, ...(this.data.boxes ?? []).filter((one) => one.kind === 'keep_out').map((one) => origin(one.world_from_box))];
-    const solids = (this.data.capsules ?? []).filter((one) => one.kind === 'keep_out').flatMap(({ from, to, radius }) => [from, to].flatMap((end) =>
-      [-radius, radius].map((off) => apply(this.data.world_from_base, end).map((value) => value + off))));
+    const others = [
+      this.data.instrument?.position,
+      ...(this.data.boxes ?? []).filter((one) => one.kind === 'keep_out').map((one) => origin(one.world_from_box)),
+    ];
+    const solids = (this.data.capsules ?? [])
+      .filter((one) => one.kind === 'keep_out')
+      .flatMap(({ from, to, radius }) =>
+        [from, to].flatMap((end) => [-radius, radius].map((off) => apply(this.data.world_from_base, end).map((value) => value + off))),
+      );
     this.whole = [...this.near, ...[...others, ...solids].filter(Boolean).map((place) => new Vector3(...place))];
     return Math.max(new Box3().setFromPoints(this.near).getSize(new Vector3()).length() / 2, 0.05);
   }
@@ -92,7 +120,11 @@ export class Viewer {
     const place = (joints) => apply(flange(this.data, joints), at);
     this.places = this.poses.map((pose) => place(pose.joints));
     const isMany = this.poses.length > 100;
-    this.dots = new InstancedMesh(new SphereGeometry((isMany ? 0.012 : 0.02) * this.size, isMany ? 8 : 16, isMany ? 6 : 10), new MeshBasicMaterial({}), this.poses.length);
+    this.dots = new InstancedMesh(
+      new SphereGeometry((isMany ? 0.012 : 0.02) * this.size, isMany ? 8 : 16, isMany ? 6 : 10),
+      new MeshBasicMaterial({}),
+      this.poses.length,
+    );
     this.places.forEach((point, k) => {
       this.dots.setMatrixAt(k, new Matrix4().makeTranslation(...point));
     });
@@ -102,8 +134,9 @@ export class Viewer {
     };
     this.scene.add(this.dots);
     if (this.poses.length < 2 || !this.poses[0].hasWay) return;
-    const points = this.poses.slice(1).flatMap((pose, k) =>
-      way(this.poses[k].joints, pose.joints, pose.via, 10).map((joints) => new Vector3(...place(joints))));
+    const points = this.poses
+      .slice(1)
+      .flatMap((pose, k) => way(this.poses[k].joints, pose.joints, pose.via, 10).map((joints) => new Vector3(...place(joints))));
     this.scene.add(new Line(new BufferGeometry().setFromPoints(points), this.materials.way));
   }
 
@@ -175,7 +208,10 @@ export class Viewer {
     // From the side that the robot reaches to rather than from behind it, and a little from the instrument.
     const middle = new Box3().setFromPoints(this.near).getCenter(new Vector3());
     const isFront = middle.sub(new Vector3(...origin(this.data.world_from_base))).dot(across) >= 0;
-    return across.multiplyScalar(isFront ? 1 : -1).addScaledVector(between.normalize(), 0.55).normalize();
+    return across
+      .multiplyScalar(isFront ? 1 : -1)
+      .addScaledVector(between.normalize(), 0.55)
+      .normalize();
   }
 
   /** The robot in a configuration, and the name of the pose if it is one. */

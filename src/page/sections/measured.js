@@ -7,8 +7,10 @@ export const title = 'What it rests on';
 
 export const isShown = () => true;
 
-const options = (made) => Object.entries(made ?? {}).map(([name, values]) =>
-  [name, ...[values].flat()].join(' ')).join('  ');
+const options = (made) =>
+  Object.entries(made ?? {})
+    .map(([name, values]) => [name, ...[values].flat()].join(' '))
+    .join('  ');
 
 function ofPlan({ candidates, problem, search, pool, poses, assumes }) {
   return [
@@ -48,7 +50,10 @@ function ofEstimate(document) {
   const { measured, made_from: made } = document;
   return [
     ['Measurements', document.measurements],
-    ['Measured', `${count(measured.configurations, 'configuration')}, ${count(measured.samples, 'sample')}, ${measured.readings_seen} of ${measured.readings} readings seen`],
+    [
+      'Measured',
+      `${count(measured.configurations, 'configuration')}, ${count(measured.samples, 'sample')}, ${measured.readings_seen} of ${measured.readings} readings seen`,
+    ],
     ['Left out', (document.excluded ?? []).join(', ')],
     ['Readings', document.readings],
     ['Campaign file', made?.campaign_file],
@@ -77,22 +82,30 @@ function ofStudy(document) {
 function sizeTable(assumes) {
   const sizes = Object.entries(assumes?.expected_error ?? {});
   if (sizes.length === 0) return null;
-  return table('Expected size of each error', ['parameter', 'expected', ''], sizes.map(([key, value]) =>
-    [key.replace(/_(m|rad)$/, ''), milli(value), key.endsWith('_rad') ? 'mrad' : 'mm']));
+  return table(
+    'Expected size of each error',
+    ['parameter', 'expected', ''],
+    sizes.map(([key, value]) => [key.replace(/_(m|rad)$/, ''), milli(value), key.endsWith('_rad') ? 'mrad' : 'mm']),
+  );
 }
 
 const kinds = { plan: ofPlan, estimate: ofEstimate, study: ofStudy };
 
 export function render(part) {
   const { document } = part;
-  return el('div', {}, facts([
-    ['Robot', part.robot],
-    ['File', part.file],
-    ['Joints', part.scene ? part.scene.joints.map((joint) => joint.name).join(' ') : null],
-    ['Instrument', part.scene?.instrument?.kind],
-    ['Made at', part.made_at],
-    ['Command', part.command ? el('code', {}, part.command) : null],
-    ['Version', `posewise ${document.posewise_version}, document format ${document.format}`],
-    ...(kinds[part.kind]?.(document) ?? []),
-  ]), behind([sizeTable(document.assumes)], 'Expected sizes of errors'));
+  return el(
+    'div',
+    {},
+    facts([
+      ['Robot', part.robot],
+      ['File', part.file],
+      ['Joints', part.scene ? part.scene.joints.map((joint) => joint.name).join(' ') : null],
+      ['Instrument', part.scene?.instrument?.kind],
+      ['Made at', part.made_at],
+      ['Command', part.command ? el('code', {}, part.command) : null],
+      ['Version', `posewise ${document.posewise_version}, document format ${document.format}`],
+      ...(kinds[part.kind]?.(document) ?? []),
+    ]),
+    behind([sizeTable(document.assumes)], 'Expected sizes of errors'),
+  );
 }

@@ -67,10 +67,14 @@ export function player(poses, stage, show, say) {
     event.preventDefault();
     step(to);
   });
-  const bar = el('div', { class: 'player' },
+  const bar = el(
+    'div',
+    { class: 'player' },
     el('button', { type: 'button', 'aria-label': 'Previous pose', onclick: () => step(current - 1) }, '\u2190'),
     play,
     el('button', { type: 'button', 'aria-label': 'Next pose', onclick: () => step(current + 1) }, '\u2192'),
-    slider, status);
+    slider,
+    status,
+  );
   return { bar, go };
 }

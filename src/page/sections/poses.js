@@ -64,8 +64,14 @@ function rangeTable(joints, poses) {
     const used = poses.map((pose) => pose.joints[j]);
     const [low, high] = [Math.min(...used), Math.max(...used)];
     const part = (high - low) / (joint.upper - joint.lower);
-    return [columnTitle(key), cellOf(key, joint.lower), cellOf(key, joint.upper), cellOf(key, low), cellOf(key, high),
-      Number.isFinite(part) ? `${fixed(100 * part, 0)} %` : '-'];
+    return [
+      columnTitle(key),
+      cellOf(key, joint.lower),
+      cellOf(key, joint.upper),
+      cellOf(key, low),
+      cellOf(key, high),
+      Number.isFinite(part) ? `${fixed(100 * part, 0)} %` : '-',
+    ];
   });
   return table('Joint ranges', ['joint', 'lower limit', 'upper limit', 'least used', 'largest used', 'of the range'], rows);
 }
@@ -74,11 +80,27 @@ function rangeTable(joints, poses) {
 function jointTable(joints, poses) {
   const cells = joints.map(() => el('td', { class: 'number' }));
   const bars = joints.map(() => el('span', { class: 'bar-mark' }));
-  const element = el('table', { class: 'joints' },
+  const element = el(
+    'table',
+    { class: 'joints' },
     el('caption', {}, 'Joints of this pose'),
-    el('thead', {}, el('tr', {}, ['joint', 'value', 'between its limits'].map((text) => el('th', { scope: 'col' }, text)))),
-    el('tbody', {}, joints.map((joint, j) => el('tr', {}, el('th', { scope: 'row' }, columnTitle(poses[0].keys[j])), cells[j],
-      el('td', {}, el('span', { class: 'bar-track' }, bars[j]))))));
+    el(
+      'thead',
+      {},
+      el(
+        'tr',
+        {},
+        ['joint', 'value', 'between its limits'].map((text) => el('th', { scope: 'col' }, text)),
+      ),
+    ),
+    el(
+      'tbody',
+      {},
+      joints.map((joint, j) =>
+        el('tr', {}, el('th', { scope: 'row' }, columnTitle(poses[0].keys[j])), cells[j], el('td', {}, el('span', { class: 'bar-track' }, bars[j]))),
+      ),
+    ),
+  );
   return {
     element,
     show(values) {
@@ -107,8 +129,12 @@ function views(viewer) {
   const names = { all: 'Whole', robot: 'Robot', front: 'Front', side: 'Side', top: 'Top' };
   const frames = el('input', { type: 'checkbox', checked: true });
   frames.addEventListener('change', () => viewer.showFrames(frames.checked));
-  return el('div', { class: 'views' }, Object.entries(names).map(([key, name]) =>
-    el('button', { type: 'button', onclick: () => viewer.look(key) }, name)), el('label', {}, frames, 'Frames'));
+  return el(
+    'div',
+    { class: 'views' },
+    Object.entries(names).map(([key, name]) => el('button', { type: 'button', onclick: () => viewer.look(key) }, name)),
+    el('label', {}, frames, 'Frames'),
+  );
 }
 
 /** Fills the stage with the robot in 3D where there is WebGL, with a sentence else; gives the viewer. */
@@ -136,26 +162,48 @@ export function render(part) {
   const coordinates = parallelCoordinates(joints, poses, colours, `Joints of ${count(poses.length, 'pose')} between their limits, as parallel coordinates`);
   const one = jointTable(joints, poses);
   let viewer = null;
-  const steps = player(poses, stage ?? coordinates.element, (k, onTheWay) => {
-    one.show(onTheWay ?? poses[k].joints);
-    viewer?.show(onTheWay ?? poses[k].joints, onTheWay ? [] : poses[k].targets, onTheWay ? '' : poses[k].id);
-    if (!onTheWay) coordinates.show(k);
-  }, (k) => describe(poses, k));
-  const side = el('div', { class: 'stage-side' }, one.element, bar,
-    hasNeeded ? el('p', { class: 'note' }, 'Red: without this pose parameters are left unidentified.') : null);
+  const steps = player(
+    poses,
+    stage ?? coordinates.element,
+    (k, onTheWay) => {
+      one.show(onTheWay ?? poses[k].joints);
+      viewer?.show(onTheWay ?? poses[k].joints, onTheWay ? [] : poses[k].targets, onTheWay ? '' : poses[k].id);
+      if (!onTheWay) coordinates.show(k);
+    },
+    (k) => describe(poses, k),
+  );
+  const side = el(
+    'div',
+    { class: 'stage-side' },
+    one.element,
+    bar,
+    hasNeeded ? el('p', { class: 'note' }, 'Red: without this pose parameters are left unidentified.') : null,
+  );
   const together = el('div', { class: 'stage-row' }, stage ? el('div', {}, stage) : null, side);
-  const element = el('div', {}, introduction(part, poses), steps.bar, together,
+  const element = el(
+    'div',
+    {},
+    introduction(part, poses),
+    steps.bar,
+    together,
     figure('Joint values of all poses between the limits; the current pose is dark.', coordinates.element, [rangeTable(joints, poses)]),
     behind([poseTable('Poses', poses)], `All ${count(poses.length, 'pose')} as a table`),
-    toVerify.length > 0 ? behind([poseTable('Poses to judge the calibration on', toVerify)],
-      `${count(toVerify.length, 'pose')} more, to judge the calibration on and not to calibrate with`) : null);
+    toVerify.length > 0
+      ? behind(
+          [poseTable('Poses to judge the calibration on', toVerify)],
+          `${count(toVerify.length, 'pose')} more, to judge the calibration on and not to calibrate with`,
+        )
+      : null,
+  );
   if (stage) {
     checkFlange(part.scene, poses[0].joints);
     // After the page stands: to make a context and its programs takes a while.
-    requestAnimationFrame(() => requestAnimationFrame(() => {
-      viewer = fillStage(stage, part, poses, colours);
-      steps.go(0);
-    }));
+    requestAnimationFrame(() =>
+      requestAnimationFrame(() => {
+        viewer = fillStage(stage, part, poses, colours);
+        steps.go(0);
+      }),
+    );
   }
   steps.go(0);
   return element;

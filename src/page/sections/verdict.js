@@ -16,9 +16,12 @@ export function warningsOf({ warnings, faults }) {
 
 /** The answers of the program: the first one sums up. */
 export function render({ kind, document }) {
-  const [first, ...others] = kind === 'export' ? answerExport(document) : document.answers ?? [];
-  return el('div', {},
+  const [first, ...others] = kind === 'export' ? answerExport(document) : (document.answers ?? []);
+  return el(
+    'div',
+    {},
     el('p', { class: 'verdict' }, first ? sentence(first.text) : 'This document has no answers yet: make it again with this posewise.'),
     warningsOf(document).map((text) => el('p', { class: 'warning', role: 'note' }, text)),
-    facts(others.map(({ question, text }) => [question, sentence(text)])));
+    facts(others.map(({ question, text }) => [question, sentence(text)])),
+  );
 }
