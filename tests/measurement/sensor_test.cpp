@@ -37,7 +37,7 @@ TEST(EverySensor, HasTheJacobianOfItsPredictionAndOfItsPositions) {
                 const Parameters at = perturbed(campaign, stream, magnitude);
                 VectorXd q = random_vector(stream, 6, 3);
                 if (sensor.has_view()) {  // not with a corner in the plane of the lens
-                    q = viewed_poses(campaign, at, 1, static_cast<std::uint64_t>(item))
+                    q = detail::viewed_poses(campaign, at, 1, static_cast<std::uint64_t>(item))
                             .configurations.row(0)
                             .transpose();
                 }
