@@ -4,13 +4,13 @@
 namespace posewise {
 
 PointSensor::PointSensor(Targets targets, PointNoise noise)
-    : targets_(std::move(targets)), noise_(noise) {
+    : targets_(std::move(targets)), noise_(std::move(noise)) {
     check_noise(noise_);
 }
 
 PointSensor::PointSensor(const std::vector<std::optional<Vector3d>>& known_targets,
                          PointNoise noise)
-    : PointSensor(Targets(known_targets), noise) {}
+    : PointSensor(Targets(known_targets), std::move(noise)) {}
 
 PointSensor::PointSensor(const std::vector<std::optional<Vector3d>>& known_targets, double sigma)
     : PointSensor(Targets(known_targets), IsotropicNoise{sigma}) {}

@@ -32,7 +32,7 @@ PoseSensor::PoseSensor(std::optional<Isometry3d> known_tool, PointNoise position
                        double sigma_orientation, PoseRecord record)
     : known_tool_(std::move(known_tool)),
       origin_(origin_of(known_tool_)),
-      noise_(position_noise),
+      noise_(std::move(position_noise)),
       sigma_orientation_(sigma_orientation),
       record_(record) {
     check_noise(noise_);

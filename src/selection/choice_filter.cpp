@@ -134,7 +134,7 @@ std::vector<double> polar_factor(const MatrixXd& M, Index first) {
         Eigen::LLT<MatrixXd>(M).matrixL().solve(MatrixXd::Identity(size, size));
     const MatrixXd R = inverse.bottomRightCorner(interest, interest);
     const auto eigen = eigen_decomposition(R.transpose() * R);
-    const MatrixXd V = eigen.eigenvectors();
+    const MatrixXd& V = eigen.eigenvectors();
     const MatrixXd polar =
         R * (V * eigen.eigenvalues().cwiseSqrt().cwiseInverse().asDiagonal() * V.transpose());
     std::vector<double> result(static_cast<std::size_t>(packed(size, 0)), 0);

@@ -132,7 +132,7 @@ std::vector<PlaceDoubt> find_place_doubts(const Campaign& campaign, const Parame
     for (Index k = 0; k < targets.count(); ++k) {
         const Vector3d stated = targets.position(k, campaign.nominal.sensor);
         const Vector3d found = targets.position(k, registered.sensor);
-        const std::string name = names[static_cast<std::size_t>(3 * k)];  // "target1.x"
+        const std::string& name = names[static_cast<std::size_t>(3 * k)];  // "target1.x"
         places.push_back({name.substr(0, name.find('.')),
                           stated,
                           found,

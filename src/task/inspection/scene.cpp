@@ -104,9 +104,9 @@ void add_cell(Scene& scene, const Campaign& campaign, const std::vector<Index>& 
 }  // namespace
 
 Scene make_scene(const Campaign& campaign, const Parameters& parameters) {
-    SceneRobot drawn = drawn_robot(campaign.robot, parameters.robot);
+    const SceneRobot drawn = drawn_robot(campaign.robot, parameters.robot);
     Scene scene;
-    scene.robot = std::move(drawn.robot);
+    scene.robot = drawn.robot;
     scene.world_from_base = parameters.world_from_base;
     const Targets& targets = campaign.sensor->targets();
     for (Index k = 0; k < targets.count(); ++k) {
