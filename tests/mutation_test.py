@@ -89,7 +89,7 @@ def passes(mutant: pathlib.Path, source: pathlib.Path, unit: Unit, build: pathli
     run(["sh", "-c", f"{before} -Wl,-z,muldefs {made}{first}{others}"], build)
     done = subprocess.run([tests, f"--gtest_filter={test}"], cwd=mutant.parent, capture_output=True,
                           text=True)
-    if test not in done.stdout:
+    if f"[ RUN      ] {test}\n" not in done.stdout:
         raise Fault(f"there is no test {test}")
     return done.returncode == 0
 
@@ -118,7 +118,7 @@ def main(repository: str, build_folder: str, ninja: str) -> int:
         except Fault as error:
             fault = str(error)
         faults += fault != ""
-        print(f"{file}: {wrong}: {fault or 'as it must be'}", flush=True)
+        print(f"{file}: {line if fault else wrong}: {fault or 'as it must be'}", flush=True)
     return 1 if faults else 0
 
 

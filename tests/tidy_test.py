@@ -2,7 +2,7 @@
 
 Changed is what the branch adds to the default branch (on that, what the last commit changed) and what
 is not committed. Sources of one unit are read together, as are all headers; the smallest first, and
-what there is no time for is named. Skipped (exit code 77) without clang-tidy 14, that of Debian 12,
+what there is no time for is named. Skipped (exit code 77) without git or clang-tidy 14 (Debian 12),
 outside a clone, and where no C++ has changed.
 """
 
@@ -69,8 +69,8 @@ def options_for_clang(command: tuple[str, ...]) -> list[str]:
 def main(repository: str, build_folder: str) -> int:
     root, build = pathlib.Path(repository), pathlib.Path(build_folder)
     program = shutil.which("clang-tidy-14")
-    if program is None:
-        print("clang-tidy 14 is not installed")
+    if program is None or shutil.which("git") is None:
+        print("clang-tidy 14 or git is not installed")
         return 77
     lines = changed_lines(root)
     if not lines:
