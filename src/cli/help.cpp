@@ -69,6 +69,7 @@ constexpr std::pair<std::string_view, Group> group_of_option[] = {
     {"every", Rare},
     {"vary", Asked},
     {"points", Rare},
+    {"augment-plan", Rare},
     {"points-unit", Rare},
     {"refine", Asked},
     {"geometry", Asked},

@@ -244,8 +244,9 @@ TEST_F(Points, WhatIsWrongIsSaidAndNothingWritten) {
     const std::string out = " -o e.json";
     expect_input_error("calibrate c.yaml -m p.txt" + out,
                        "p.txt: is a list of points without joint values; must come with the plan "
-                       "whose poses were measured (--plan of calibrate, indices, inspect and "
-                       "study), or be a table with the column config\n");
+                       "whose poses were measured (--plan of calibrate, indices, inspect, select "
+                       "and study, --augment-plan of plan), or be a table with the column "
+                       "config\n");
     expect_input_error(
         "calibrate c.yaml -m p.txt --plan plan.json" + out,
         "p.txt: does not state the unit of its points; state --points-unit, or x_mm, "

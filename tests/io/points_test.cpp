@@ -336,8 +336,8 @@ TEST(BadPoints, ThoseOfAnotherRobotOrWithoutAPlan) {
     EXPECT_EQ(
         input_error_of([&] { read_measurements(path, crane_file()); }),
         "p.txt: is a list of points without joint values; must come with the plan whose poses "
-        "were measured (`plan` of calibrate, indices, inspect and study), or be a table with "
-        "the column config");
+        "were measured (`plan` of calibrate, indices, inspect, select and study, `augment_plan` of "
+        "plan), or be a table with the column config");
     Plan other = planned();
     other.campaign = "another";
     EXPECT_EQ(input_error_of([&] { read_points("P001_T1 1 2 3\n", "mm", other); }),
