@@ -57,15 +57,19 @@ std::string describe_verdict(const Calibration& calibration, const Kind& kind, b
     const bool is_calibration = calibration.faults.empty() &&
                                 &units == &calibration.campaign.sensor->main_units() &&
                                 group.found.rms() < calibration.nominal.rms();
+    const bool exceeds_limit =
+        calibration.limit && judge_limit(group, *calibration.limit) == LimitVerdict::NotKept;
+    const auto as_expected = [&](const std::string& chance, const char* holds) {
+        if (exceeds_limit) return times + chance + ": as expected, but more than the limit";
+        return times + chance + (is_calibration ? holds : "");
+    };
     switch (group.verdict) {
         case ChanceVerdict::NotJudged:
             return unjudged;
         case ChanceVerdict::Within:
-            return times + (is_calibration ? ", within chance: the calibration holds there"
-                                           : ", within chance");
+            return as_expected(", within chance", ": the calibration holds there");
         case ChanceVerdict::Below:
-            return times + (is_calibration ? ", less than chance would have it: it holds there"
-                                           : ", less than chance would have it");
+            return as_expected(", less than chance would have it", ": it holds there");
         case ChanceVerdict::Beyond:
             break;
     }

@@ -234,6 +234,8 @@ TEST(FormatCalibration, SaysWhetherALimitIsKept) {
         calibrate(example.campaign, example.measurements, options).validation->found.rms();
     EXPECT_TRUE(holds(report(2 * rms), " mm: pass; ")) << report(2 * rms);
     EXPECT_TRUE(holds(report(0.5 * rms), " mm: fail; ")) << report(0.5 * rms);
+    EXPECT_TRUE(holds(report(0.5 * rms), "within chance: as expected, but more than the limit\n"))
+        << report(0.5 * rms);
     EXPECT_TRUE(holds(report(1.1 * rms), " mm: undecided (if the RMS stays, "))
         << report(1.1 * rms);
 }
