@@ -96,7 +96,7 @@ def _campaign_table(document: Mapping[str, Any]) -> pd.DataFrame:
         for planned in row["planned"]:
             one = {key: value for key, value in planned.items() if key != "against_random"}
             against = planned.get("against_random") or {}
-            for key in ("ratio", "lower", "upper", "verdict"):
+            for key in ("ratio", "lower", "upper", "left_out", "verdict"):
                 one[f"against_random_{key}"] = against.get(key)
             rows.append({"poses": row["pose_count"], "criterion": one.pop("criterion"), **shared, **one})
     return _numeric(pd.DataFrame(rows), "criterion", "against_random_verdict")

@@ -38,7 +38,7 @@ is read: eight configurations chosen by V leave 0.28 mm, median of the splits, w
 themselves expect 0.21; half of all random eights leave more than 0.45. Planned against random it is
 0.57, geometric mean over the splits with its 95 % interval: better where all of it is below 1, loses
 where all is above 1, within chance else. Subsets that do not identify the model count as the worst
-("-": no number). The pose count from which a column stays flat is enough.
+("-": no number); splits of which half the random ones do not are left out of the ratio. The pose count from which a column stays flat is enough.
 
 --from studies the robot as an earlier calibration found it; with --as-prior each subset is calibrated
 with what that knew, with --only base,targets only these are found.

@@ -82,6 +82,11 @@ std::string describe_sureness(const Study& study, const Curve& curve) {
     if (const auto advantage = planned_advantage(study, row, 0)) {
         text += fmt::format("; planned against random {:.2f}, with 95 % {:.2f} to {:.2f}",
                             advantage->ratio, advantage->lower, advantage->upper);
+        if (advantage->left_out > 0) {
+            text +=
+                fmt::format(", without {} whose random subsets do not identify the model",
+                            count_of(advantage->left_out, study.is_simulated ? "robot" : "split"));
+        }
     }
     return text;
 }

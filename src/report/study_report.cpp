@@ -78,10 +78,15 @@ std::string describe_verdicts(const Study& study) {
     std::string text;
     for (std::size_t c = 0; c < study.criteria.size(); ++c) {
         std::map<std::string_view, std::string> counts;  // of poses
+        std::string left_out;
         for (const StudyRow& row : study.rows) {
             const auto advantage = planned_advantage(study, row, c);
             std::string& list = counts[advantage ? verdict_name(verdict_of(*advantage)) : unknown];
             list += (list.empty() ? "" : ", ") + std::to_string(row.pose_count);
+            if (!advantage || advantage->left_out == 0) continue;
+            left_out +=
+                fmt::format("{}{} of {} at {}", left_out.empty() ? "" : ", ", advantage->left_out,
+                            split_count(row, study.criteria.size()), row.pose_count);
         }
         std::string line;
         for (const std::string_view verdict :
@@ -89,6 +94,10 @@ std::string describe_verdicts(const Study& study) {
               verdict_name(Verdict::Loses), unknown}) {
             if (!counts.contains(verdict)) continue;
             line += fmt::format("{}{} at {}", line.empty() ? "" : "; ", verdict, counts[verdict]);
+        }
+        if (!left_out.empty()) {
+            line += fmt::format("; {} left out, whose random subsets do not identify the model: {}",
+                                study.is_simulated ? "robots" : "splits", left_out);
         }
         text +=
             fmt::format("{}{}{}, planned against random: {}\n", study.model,

@@ -129,9 +129,13 @@ TEST(FormatStudy, CallsWithinChanceWhatMayBeChanceInEitherDirection) {
     study.splits = 2;
     study.test_count = 1;
     study.rows.push_back({8, {StudyCase{}, StudyCase{}}, {StudyCase{}}});
-    EXPECT_NE(format(study).find("\nd, planned against random: better at 2; within chance at 3, 4, "
-                                 "6, 7; loses at 5; not known at 8\n"),
-              std::string::npos)
+    study.rows.push_back(row_with_ratios(9, 0.5, 0.6));
+    study.rows.back().random = {StudyCase{}, study.rows.back().random[1]};
+    EXPECT_NE(
+        format(study).find("\nd, planned against random: better at 2; within chance at 3, 4, "
+                           "6, 7, 9; loses at 5; not known at 8; splits left out, whose random "
+                           "subsets do not identify the model: 1 of 2 at 9\n"),
+        std::string::npos)
         << format(study);
 }
 

@@ -389,7 +389,15 @@ TEST(PlannedAdvantage, IsTheGeometricMeanOverSplits) {
     EXPECT_NEAR(planned_advantage(study, row, 0, other)->ratio, 1, 1e-15);
     other = {8, {case_with_error(1)}, {case_with_error(4), case_with_error(9), case_with_error(3)}};
     EXPECT_NEAR(planned_advantage(study, row, 0, other)->ratio, 0.25, 1e-15);
-    row.random = {case_with_error(2), StudyCase{}};
+    EXPECT_EQ(advantage->left_out, 0);
+    row.random = {case_with_error(2), StudyCase{}};  // none is comparable in the second split
+    ASSERT_TRUE(planned_advantage(study, row, 0));
+    EXPECT_NEAR(planned_advantage(study, row, 0)->ratio, 0.5, 1e-15);
+    EXPECT_EQ(planned_advantage(study, row, 0)->left_out, 1);
+    row.random = {StudyCase{}, StudyCase{}};
+    EXPECT_FALSE(planned_advantage(study, row, 0));
+    row.random = {case_with_error(2), case_with_error(2)};
+    row.optimal = {case_with_error(1), StudyCase{}};
     EXPECT_FALSE(planned_advantage(study, row, 0));
     study.splits = 0;
     EXPECT_FALSE(planned_advantage(study, row, 0));

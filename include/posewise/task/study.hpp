@@ -238,11 +238,13 @@ struct Advantage {
     /// itself.
     double lower = 1;
     double upper = 1;  ///< upper end
+    /// Splits that it is not over: half of their random subsets do not identify the model.
+    Index left_out = 0;
 
     bool is_of_one_split() const { return lower == upper; }
 };
-/// For the criterion of that number in one row of a study with splits. Nothing if a planned subset,
-/// or half of the random ones, of a split do not identify the model.
+/// For the criterion of that number in one row of a study with splits. Nothing if a planned subset
+/// does not identify the model, or if all splits are left out.
 std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& row,
                                            std::size_t criterion);
 

@@ -141,6 +141,7 @@ Json advantage_to_json(const Advantage& advantage) {
     return {{"ratio", advantage.ratio},
             {"lower", advantage.lower},
             {"upper", advantage.upper},
+            {"left_out", advantage.left_out},
             {"verdict", verdict_name(verdict_of(advantage))}};
 }
 

@@ -81,7 +81,9 @@ std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& r
     const StudyCases planned = planned_cases(row, criterion, study.criteria.size());
     // Each split has as many planned subsets, and every so many-th random one.
     const std::size_t others = other_row.optimal.size() / study.criteria.size();
-    return detail::geometric_mean([&](const std::function<void(double)>& visitor) {
+    Index left_out = 0;
+    auto advantage = detail::geometric_mean([&](const std::function<void(double)>& visitor) {
+        left_out = 0;
         for (std::size_t split = 0; split < std::min(planned.size(), others); ++split) {
             std::vector<StudyCase> random;
             for (std::size_t i = split; i < other_row.random.size(); i += others) {
@@ -89,10 +91,15 @@ std::optional<Advantage> planned_advantage(const Study& study, const StudyRow& r
             }
             const auto median = held_out_quantile(std::move(random), 0.5);
             const auto found = held_out_quantile({planned[split]}, 0.5);
-            visitor(median && found ? std::log(*found / *median)
-                                    : std::numeric_limits<double>::quiet_NaN());
+            if (found && !median) {
+                ++left_out;
+                continue;
+            }
+            visitor(found ? std::log(*found / *median) : std::numeric_limits<double>::quiet_NaN());
         }
     });
+    if (advantage) advantage->left_out = left_out;
+    return advantage;
 }
 
 Verdict verdict_of(const Advantage& advantage) {
