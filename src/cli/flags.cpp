@@ -16,6 +16,7 @@ constexpr auto flags = std::to_array<std::pair<std::string_view, std::string_vie
      {"earlier.is_prior", "--as-prior"},
      {"folds", "--folds"},
      {"held", "--augment"},
+     {"holdout", "--holdout"},
      {"is_focused_on_robot", "--focus robot"},
      {"least_distance", "--least-distance-deg"},
      {"measured", "--measurements"},

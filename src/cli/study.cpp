@@ -206,6 +206,9 @@ void study(const CLI::App& command, const StudyArguments& arguments, const Commo
         return;
     }
     if (!early.empty()) print_warning(early);
+    if (const std::string few = describe_few_judged(studies.front()); !few.empty()) {
+        print_warning(few);
+    }
     warn_of_precision(studies);
     print_studies(studies, arguments, common, std::move(extras));
 }

@@ -117,7 +117,9 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
             arguments.options.pose_counts = parse_counts(text);
         },
         "Pose counts, 5:24 or 6,9,12 (default: 8,12,16,20,30,50 up to a third of what there is to "
-        "choose from; without splits from the least that identifies to all but one)");
+        "choose from; without splits from the least that identifies to all but one, of fewer than "
+        "50 to all but "
+        "a fifth)");
     add_prior_option(command, arguments.prior, ": of choice and calibration alike");
     add_earlier_options(command, arguments.earlier);
     let_force_take_measured(command);

@@ -411,6 +411,8 @@ Result to_result(const Study& study, Sentences warnings) {
     if (study.ending == Ending::NotIdentifiable) throw InputError(study.undetermined);
     const std::string early = describe_early_end(study);
     if (!early.empty()) warnings.push_back(early);
+    const std::string few = describe_few_judged(study);
+    if (!few.empty()) warnings.push_back(few);
     const std::vector studies{study};
     return {io::with_sentences(io::to_json(studies), warnings, answer(studies)), format(study),
             warnings};

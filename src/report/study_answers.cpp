@@ -75,7 +75,12 @@ std::string sum_up(const Study& study, const Curve& curve) {
 
 std::string describe_sureness(const Study& study, const Curve& curve) {
     const StudyRow& row = *curve.rows[enough(curve.points)];
-    if (study.splits == 0) return "every subset was judged on the poses it leaves";
+    if (study.splits == 0) {
+        constexpr Index few = 10;
+        const Index left = static_cast<Index>(study.ids.size()) - row.pose_count;
+        return std::string("every subset was judged on the poses it leaves") +
+               (left < few ? fmt::format(", here {}", left) : "");
+    }
     const std::string splits =
         count_of(split_count(row, study.criteria.size()), study.is_simulated ? "robot" : "split");
     std::string text = "medians over " + splits;

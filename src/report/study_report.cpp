@@ -171,6 +171,26 @@ std::string describe_early_end(const Study& study) {
         study.rows.back().pose_count);
 }
 
+std::string describe_few_judged(const Study& study) {
+    constexpr Index few = 4;
+    if (study.is_simulated || study.rows.empty()) return "";
+    const Index most = study.rows.back().pose_count;
+    const Index judged =
+        study.splits > 0 ? study.test_count : static_cast<Index>(study.ids.size()) - most;
+    if (judged <= 0 || judged >= few) return "";  // none: no error is stated either
+    const std::string count = detail::count_of(judged, "pose");
+    return study.splits > 0
+               ? fmt::format(
+                     "each split judges on {} only, which says little of others; `holdout` "
+                     "must be larger, or more poses measured",
+                     count)
+               : fmt::format(
+                     "the accuracy with {} is judged on {} only, what they leave, which says "
+                     "little of others; the largest `pose_count` must be smaller, or more poses "
+                     "measured",
+                     detail::count_of(most, "pose"), count);
+}
+
 void write_study_csv(const Study& study, const WriteText& write) {
     write(csv_header);
     write_csv_lines(study, "", write);

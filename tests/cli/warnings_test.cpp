@@ -75,6 +75,7 @@ TEST_F(Warnings, StandInEveryDocumentAndOnEveryPage) {
         {"select narrow.yaml -m s.csv -k 8 --relax -o weights.json", "weights.json"},
         {"verify choice.json"},
         {"study narrow.yaml -m s.csv -k 6 --random 4 --splits 2 --starts 1", "", true},
+        {"study " + fanuc_design + " -m s.csv -k 8,15 --random 4 --splits 0 --starts 1", "", true},
         {"plan noisy.yaml --from e.json" + quick + "-k 6 -o plan.json", "plan.json", true},
         {"inspect noisy.yaml --from e.json"},
         {"export noisy.yaml e.json --dh dh.yaml"},

@@ -139,6 +139,27 @@ TEST(FormatStudy, CallsWithinChanceWhatMayBeChanceInEitherDirection) {
         << format(study);
 }
 
+TEST(DescribeFewJudged, SaysHowFewPosesTheAccuracyRestsOn) {
+    Study study = example_study();
+    EXPECT_EQ(describe_few_judged(study), "") << "with 3 of 3 poses nothing is judged";
+    study.ids.emplace_back("e");
+    EXPECT_EQ(describe_few_judged(study),
+              "the accuracy with 3 poses is judged on 1 pose only, what they leave, which says "
+              "little of others; the largest `pose_count` must be smaller, or more poses measured");
+    study.ids.resize(7);
+    EXPECT_EQ(describe_few_judged(study), "");
+    study.splits = 2;
+    study.test_count = 3;
+    EXPECT_EQ(describe_few_judged(study),
+              "each split judges on 3 poses only, which says little of others; `holdout` must be "
+              "larger, or more poses measured");
+    study.test_count = 4;
+    EXPECT_EQ(describe_few_judged(study), "");
+    EXPECT_EQ(answer({study})[1].text.find("every subset"), std::string::npos);
+    study.splits = 0;
+    EXPECT_EQ(answer({study})[1].text, "every subset was judged on the poses it leaves, here 4");
+}
+
 TEST(FormatStudy, SaysHowManyRobotsOfEachVariationThereWereTimeFor) {
     std::vector<Study> studies = two_models();
     for (Study& study : studies) study.is_simulated = true;

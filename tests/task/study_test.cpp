@@ -162,6 +162,14 @@ TEST(StudyPoseCounts, GoesFromTheLeastCountToAllButOne) {
     EXPECT_EQ(rows.back().pose_count, 7);
 }
 
+TEST(StudyPoseCounts, LeavesAFifthAndAtLeastFourToJudgeOn) {
+    const Example example(10);
+    StudyOptions options = small_options();
+    options.pose_counts.clear();
+    options.random_subsets = 0;
+    EXPECT_EQ(study(example.campaign, example.measurements, options).rows.back().pose_count, 6);
+}
+
 TEST(StudyPoseCounts, ReportsProgressToTheEnd) {
     const Example example;
     Index last = 0;

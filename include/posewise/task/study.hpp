@@ -164,7 +164,8 @@ Index split_count(const StudyRow& row, std::size_t criterion_count);
 struct StudyOptions {
     /// By which poses are chosen; nothing: the campaign's. An empty list: random subsets only.
     std::optional<std::vector<Criterion>> criteria{};
-    /// Empty: from the least identifying count to all but one; with splits 8, 12, 16, 20, 30, 50 up
+    /// Empty: from the least identifying count to all but one (of fewer than 50 configurations: all
+    /// but a fifth, at least 4, where that many identify); with splits 8, 12, 16, 20, 30, 50 up
     /// to a third of the configurations to choose from.
     std::vector<Index> pose_counts;
     Index random_subsets = 100;

@@ -70,6 +70,14 @@ std::vector<Index> split_counts(Index pool, Index least) {
     return detail::usual_counts(least, pool / 3);
 }
 
+/// Of a study without splits, whose subsets are judged on what they leave: of few configurations
+/// the largest subsets would be judged on one, two or three, which say little of others.
+Index largest_count(Index all, Index least) {
+    constexpr Index many = 50;
+    const Index most = all < many ? all - std::max<Index>(4, all / 5) : all - 1;
+    return most < least ? all - 1 : most;
+}
+
 /// `least`: that identify the model, looked at where none are asked for.
 std::vector<Index> choose_pose_counts(const std::vector<Index>& asked, Index all, Index least,
                                       bool is_split) {
@@ -83,7 +91,7 @@ std::vector<Index> choose_pose_counts(const std::vector<Index>& asked, Index all
     if (!asked.empty()) return asked;
     std::vector<Index> counts = is_split ? split_counts(all, least) : std::vector<Index>{};
     if (!counts.empty()) return counts;
-    for (Index count = least; count < all; ++count) counts.push_back(count);
+    for (Index count = least; count <= largest_count(all, least); ++count) counts.push_back(count);
     if (counts.empty()) {
         throw InputError("a study needs " + std::to_string(least + 1) +
                          " configurations, as many as identify the model and one to judge on; " +
