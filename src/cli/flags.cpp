@@ -15,6 +15,7 @@ constexpr auto flags = std::to_array<std::pair<std::string_view, std::string_vie
      {"earlier.has_new_base", "--moved base"},
      {"earlier.is_prior", "--as-prior"},
      {"folds", "--folds"},
+     {"frames.seed", "--near"},
      {"held", "--augment"},
      {"holdout", "--holdout"},
      {"is_focused_on_robot", "--focus robot"},

@@ -205,7 +205,8 @@ TEST_F(Correct, TakesPlacesOfATool) {
                        "--tool-target is 9");
     write_text("bare.csv", "config,x_mm,y_mm,z_mm,rx_deg,ry_deg,rz_deg\na,1500,0,900,0,0,0\n");
     expect_input_error(correct_ + "bare.csv --cartesian -o c.csv",
-                       "target 'a' has no joint values to begin at");
+                       "target 'a' has no joint values to begin at; --near must state joints near "
+                       "those that are meant");
     run_well(correct_ + "bare.csv --cartesian --near 0,0,0,0,-5,0 -o c.csv");
     EXPECT_EQ(run(correct_ + "bare.csv --cartesian --near 0,0 -o c.csv").code, 2);
     EXPECT_EQ(run(correct_ + "p.csv --near 0,0,0,0,0,0").code, 2);

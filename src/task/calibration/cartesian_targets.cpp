@@ -25,7 +25,9 @@ VectorXd nominal_configuration(const Campaign& campaign, const CartesianTarget& 
     const Chain& robot = campaign.robot;
     const VectorXd& seed = target.seed.size() > 0 ? target.seed : frames.seed;
     if (seed.size() == 0) {
-        throw InputError("has no joint values to begin at; state joints near those that are meant");
+        throw InputError(
+            "has no joint values to begin at; `frames.seed` must state joints near those that are "
+            "meant");
     }
     InverseOptions options;
     options.is_wanted = target.is_wanted;
@@ -42,7 +44,7 @@ VectorXd nominal_configuration(const Campaign& campaign, const CartesianTarget& 
     if (solution.rival.size() > 0) {
         throw InputError(fmt::format(
             "is reached at {}, and at {}, which is about as near to the joint values that the "
-            "search begins at; state joints nearer to those that are meant",
+            "search begins at; `frames.seed` must state joints nearer to those that are meant",
             describe_joints(robot, solution.joints), describe_joints(robot, solution.rival)));
     }
     return solution.joints;
