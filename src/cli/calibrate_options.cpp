@@ -15,7 +15,9 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
                        "Use only the configurations of this plan, judge on those it has to verify "
                        "and on the others");
     add_exclude_option(command, options.excluded);
-    command.add_option("--method", arguments.method, "lm, two-step or global")
+    command
+        .add_option("--method", arguments.method,
+                    "Method of identification: lm, two-step or global")
         ->check(CLI::IsMember(detail::words_of(detail::method_names)))
         ->capture_default_str();
     command
@@ -71,7 +73,10 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
                     "Groups to hold out in turn; 0: none (default: every configuration by "
                     "itself up to 100 of them, else 10)")
         ->check(whole_number(0, 1000000));
-    command.add_option("--loss", arguments.loss, "squares, huber or cauchy: robust to outliers")
+    command
+        .add_option("--loss", arguments.loss,
+                    "Loss of the residuals: squares, huber or cauchy; the last two are robust to "
+                    "outliers")
         ->check(CLI::IsMember(detail::words_of(detail::loss_names)))
         ->capture_default_str();
     command
@@ -88,18 +93,18 @@ void add_calibrate_options(CLI::App& command, CalibrateArguments& arguments) {
         "estimate with --from later, list them in the campaign: errors: [dq2, dq3])");
     add_prior_option(command, arguments.prior, ": fewer poses than parameters will do");
     command
-        .add_option(
-            "--sizes", arguments.sizes,
-            "learned: learn how large the errors of each class are, from the expected sizes of "
-            "the prior; stated: keep these (default: as the campaign says)")
+        .add_option("--sizes", arguments.sizes,
+                    "How large the errors of each class are: learned, from the expected sizes of "
+                    "the prior, "
+                    "or as stated (default: as the campaign says)")
         ->check(CLI::IsMember({"learned", "stated"}));
     command.add_flag("--all-parameters", arguments.has_all_parameters, "List each, however many");
     add_earlier_options(command, arguments.earlier);
     let_force_take_measured(command);
     CLI::Option* const refit =
         add_parts_option(command, "--refit", options.refitted,
-                         "With --validate: base, targets or both (base,targets) are identified "
-                         "anew there; the rest stays")
+                         "With --validate: what is identified anew there: base, targets or both "
+                         "(base,targets); the rest stays")
             ->needs("--validate");
     command
         .add_option("--validate-campaign", arguments.validation_campaign,

@@ -131,10 +131,11 @@ void add_earlier_options(CLI::App& command, EarlierArguments& arguments) {
     if (CLI::Option* const no_prior = command.get_option_no_throw("--no-prior")) {
         as_prior->excludes(no_prior);
     }
-    add_parts_option(command, "--moved", arguments.moved,
-                     "With --from: base, targets or both (base,targets) were moved since; they are "
-                     "as the campaign says, targets perhaps more or fewer. Here and in --only and "
-                     "--refit tool, anchors, planes and sockets count as targets")
+    add_parts_option(
+        command, "--moved", arguments.moved,
+        "With --from: what was moved since: base, targets or both (base,targets); they "
+        "are as the campaign says, targets perhaps more or fewer. Here and in --only and "
+        "--refit tool, anchors, planes and sockets count as targets")
         ->needs(from);
     command
         .add_option("--drift-mm", arguments.drift_mm,

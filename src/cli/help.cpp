@@ -226,8 +226,9 @@ std::vector<const CLI::Option*> options_of(const CLI::App& command) {
     std::vector<const CLI::Option*> options = command.get_options();
     const auto is_group = [](const CLI::App* part) { return part->get_name().empty(); };
     for (const CLI::App* const group : command.get_subcommands(is_group)) {
-        const std::vector<const CLI::Option*> own = group->get_options();
-        options.insert(options.end(), own.begin(), own.end());
+        for (const CLI::Option* const own : group->get_options()) {
+            if (own != group->get_help_ptr()) options.push_back(own);  // the command has one
+        }
     }
     return options;
 }

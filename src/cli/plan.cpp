@@ -206,10 +206,10 @@ void add_plan_problem(CLI::App& command, PlanArguments& problem) {
             .add_option("-k,--poses", request.pose_count,
                         "How many configurations (with --plan: all together; default: as it has)")
             ->check(whole_number(1, 10000));
-    add_criterion_option(
-        command, problem,
-        "o1, o2, o3, o4, o5, a, d, e, g or v; g and v: worst and mean position error "
-        "over the workspace (default: v, with --focus robot d)");
+    add_criterion_option(command, problem,
+                         "Criterion to plan by: o1, o2, o3, o4, o5, a, d, e, g or v; g and v: "
+                         "worst and mean position error "
+                         "over the workspace (default: v, with --focus robot d)");
     add_focus_option(command, problem);
     CLI::Option* const augment =
         command

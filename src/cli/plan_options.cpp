@@ -16,7 +16,7 @@ void add_criterion_option(CLI::App& command, RequestArguments& arguments, const 
 void add_focus_option(CLI::App& command, RequestArguments& arguments) {
     command
         .add_option("--focus", arguments.focus,
-                    "What counts: all parameters, or the robot's; base and targets are then "
+                    "Parameters that count: all, or the robot's; base and targets are then "
                     "estimated along")
         ->check(CLI::IsMember({"all", "robot"}))
         ->capture_default_str();

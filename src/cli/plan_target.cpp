@@ -25,7 +25,7 @@ void add_target_options(CLI::App& command, TargetArguments& arguments,
             ->check(real_number(1e-6, 1e6));
     command
         .add_option("--quantity", arguments.quantity,
-                    "rms, p95 or max over the workspace's positions")
+                    "What to keep below it: rms, p95 or max over the workspace's positions")
         ->check(CLI::IsMember(quantities))
         ->capture_default_str()
         ->needs(limit);

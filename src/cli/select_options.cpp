@@ -40,13 +40,13 @@ void add_select_problem(CLI::App& command, SelectArguments& arguments) {
     command.add_option("-k,--poses", request.pose_count, "How many to choose")
         ->required()
         ->check(count);
-    add_criterion_option(
-        command, arguments,
-        "o1, o2, o3, o4, o5, a, d, e, g or v (default: the campaign's, else v; with "
-        "--focus robot or --blocks d)");
+    add_criterion_option(command, arguments,
+                         "Criterion to choose by: o1, o2, o3, o4, o5, a, d, e, g or v (default: "
+                         "the campaign's, else v; with "
+                         "--focus robot or --blocks d)");
     command
         .add_option("--test-poses", request.sources.test_poses,
-                    "g and v: predict these (as --candidates; default: the candidates)")
+                    "Poses that g and v predict (as --candidates; default: the candidates)")
         ->check(file_name());
     add_prior_option(command, arguments.prior, "; --poses may then be below what identifies");
     add_earlier_options(command, arguments.earlier);

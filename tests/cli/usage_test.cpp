@@ -29,6 +29,20 @@ TEST_F(Usage, HelpOfEveryCommandHasAnExample) {
     }
 }
 
+TEST_F(Usage, HelpNamesEachOptionOnceAndSaysWhatItIs) {
+    for (const auto& command : commands) {
+        const std::string help = run_well(command + " --help");
+        const std::size_t at = help.find(" --help");
+        EXPECT_NE(at, std::string::npos) << help;
+        EXPECT_EQ(help.find(" --help", at + 1), std::string::npos) << help;
+        // A description that begins with the values would be cut to them.
+        for (const char* values :
+             {" Learned", " What counts", " Base, targets", "  O1, o2", " Lm,"}) {
+            EXPECT_EQ(help.find(values), std::string::npos) << help;
+        }
+    }
+}
+
 TEST_F(Usage, HelpOfEveryCommandFitsAScreen) {
     for (const auto& command : commands) {
         const std::string help = run_well(command + " --help");
