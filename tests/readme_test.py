@@ -1,5 +1,5 @@
 """The commands of README, "From a URDF to the robot and back", run as they stand there for a robot that the project does
-not know: from its URDF to a program, and from an instrument's list of points to a calibrated URDF. Usage:
+not know: from its URDF to a program, and from an instrument's list of points to a calibrated URDF; and the study that it quotes. Usage:
 
     readme_test.py PROGRAM README
 """
@@ -14,6 +14,7 @@ import tempfile
 
 PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
 README = pathlib.Path(sys.argv[2]).read_text()
+ROOT = pathlib.Path(sys.argv[2]).resolve().parent
 # An arm of nobody: origins and axes of its six joints, and a flange.
 JOINTS = [("0 0 0.21", "0 0 1"), ("0.04 0 0.13", "0 1 0"), ("0 0 0.52", "0 1 0"), ("0.11 0 0.06", "1 0 0"), ("0.37 0 0", "0 1 0"),
           ("0.08 0 0", "1 0 0")]
@@ -66,7 +67,17 @@ def measure() -> None:
     pathlib.Path("points.csv").write_text("\n".join([header, *reversed(lines[1:])]) + "\n")
 
 
+def check_answers() -> None:
+    """README quotes how the study of scripts/demo begins."""
+    quoted = README[README.index("```\nHow many poses") + len("```\n"):].split("```")[0]
+    said = run("study", str(ROOT / "designs/fanuc_r2000ic_165f/campaign.yaml"), "--measurements",
+               str(ROOT / "data/fanuc_r2000ic_165f_simulated/measurements.csv"), "--criteria", "v", "--poses", "5:10,12,14")
+    if not said.startswith(quoted):
+        sys.exit(f"README quotes\n{quoted}of the study that begins\n{said}")
+
+
 def main() -> int:
+    check_answers()
     section = README[README.index("## From a URDF to the robot and back"):]
     block = section.split("```")[1]
     commands = [re.sub(r"\s+#.*", "", line)[len("posewise "):] for line in block.splitlines() if line.startswith("posewise ")]
