@@ -172,9 +172,15 @@ std::vector<Answer> answer(const Planning& planning, const std::vector<CountAccu
         const auto [rms, lower, upper] = predict_total(*one.accuracy);
         (one.is_planned ? planned : chosen).push_back({one.pose_count, rms, lower, upper});
     }
+    std::string more = describe_more(chosen, planned, planning.search.pose_count, planning.budget);
+    if (!more.empty()) {
+        more += fmt::format(
+            "; as expected, between the numbers tried: --target-mm plans for each "
+            "number and keeps its limit with {:g} %",
+            100 * TargetOptions().assurance);
+    }
     return complete(planning, sum_up(planning, "RMS", total.rms, total.lower, total.upper),
-                    simulated,
-                    describe_more(chosen, planned, planning.search.pose_count, planning.budget));
+                    simulated, more);
 }
 
 std::vector<Answer> answer(const TargetPlanning& found,

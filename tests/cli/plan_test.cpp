@@ -1,4 +1,5 @@
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "program.hpp"
 
@@ -36,6 +37,11 @@ TEST_F(PlanCommand, WritesPosesAndTellsWhatTheyAchieve) {
     EXPECT_GE(plan.at("bounds").at("continuous").at("bound"), plan.at("value"));
     EXPECT_NE(text.find("a search, not a proof"), std::string::npos) << text;
     EXPECT_NE(text.find("planned"), std::string::npos);
+    // Another number than --target-mm finds, and why.
+    const std::string line = std::regex_replace(text, std::regex("\\s+"), " ");
+    EXPECT_NE(line.find("--target-mm plans for each number and keeps its limit with 95 %"),
+              std::string::npos)
+        << text;
     EXPECT_NE(text.find("target3.z"), std::string::npos);
     // What a person measures by: select reads it, and its digits are those of the plan.
     run_well("select " + fanuc_design + " --candidates p.csv -k 8 -o s.json");
