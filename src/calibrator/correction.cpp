@@ -17,6 +17,11 @@ namespace {
 /// between joint values that are equally good.
 constexpr double change_weight = 1e-5;
 
+/// The same beside a singular pose, where it keeps joints that gain hardly anything from turning,
+/// and what they must gain to turn all the same, m per rad or m.
+constexpr double singular_change_weight = 1e-2;
+constexpr double least_gain = 2e-3;
+
 /// Falls of the sum of squares below this are rounding, m^2.
 constexpr double negligible = 1e-26;
 
@@ -55,6 +60,18 @@ class Search {
     }
 
     Correction run() {
+        const Correction correction = solve();
+        if (correction.held_by_change.empty()) return correction;
+        change_weight_ = singular_change_weight;
+        Correction calm = solve();
+        const double gained = weigh(calm.residual) - weigh(correction.residual);
+        if (gained >= least_gain * (change(correction) - change(calm))) return correction;
+        calm.is_singular = true;
+        return calm;
+    }
+
+  private:
+    Correction solve() {
         Correction correction;
         correction.joints = nominal_.cwiseMax(lower_).cwiseMin(upper_);
         correction.uncorrected = error_at(nominal_);
@@ -70,10 +87,16 @@ class Search {
         return correction;
     }
 
-  private:
+    double weigh(const PoseError& left) const {
+        return std::hypot(left.position, options_.length_per_angle * left.orientation);
+    }
+
     bool is_reached(const Correction& correction) const {
-        const PoseError& left = correction.residual;
-        return std::hypot(left.position, options_.length_per_angle * left.orientation) <= attained;
+        return weigh(correction.residual) <= attained;
+    }
+
+    double change(const Correction& correction) const {
+        return (correction.joints - nominal_).cwiseAbs().maxCoeff();
     }
 
     bool is_singular(const Correction& correction) const {
@@ -114,10 +137,10 @@ class Search {
             system.J.block<3, 1>(0, j) = velocity_of(tool, twist);
             system.J.block<3, 1>(3, j) = weight * twist.head<3>();
         }
-        system.J.bottomRows(count).diagonal().setConstant(change_weight);
+        system.J.bottomRows(count).diagonal().setConstant(change_weight_);
         system.r << wanted_ * options_.tool - tool,
             weight * missing_rotation(wanted_.linear(), flange.linear()),
-            change_weight * (nominal_ - q);
+            change_weight_ * (nominal_ - q);
         return system;
     }
 
@@ -168,6 +191,7 @@ class Search {
     VectorXd lower_;
     VectorXd upper_;
     FlangeMotion motion_;
+    double change_weight_ = change_weight;
 };
 
 void check_options(const CorrectionOptions& options) {

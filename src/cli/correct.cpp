@@ -36,7 +36,8 @@ For a controller that knows only the nominal robot: joint values that bring the 
 estimate, from calibrate --out) to where the nominal robot would be at the configurations of the
 file. Written are config, joints in degrees or mm, the pose error left and the one without
 correction, and what held a joint: its limit, or the largest change (see --largest-change-deg), which
-near a singular pose keeps joints from running away for a small error.
+near a singular pose keeps joints from running away for a small error: there they turn to it only if each
+radian gains 2 mm (mrad) at least, else little, and the configuration is called singular.
 
 Where it would be is taken from the base frame: that of the estimate, whose axis of the first joint is
 where it was measured (--base estimate), or that the campaign file states (--base campaign), if
