@@ -29,6 +29,7 @@ Ending ending_of(nlopt_result result) {
         case NLOPT_XTOL_REACHED:
             return Ending::Converged;
         case NLOPT_MAXEVAL_REACHED:
+        case NLOPT_FORCED_STOP:  // out of patience; that the caller asked to stop comes first
             return Ending::IterationLimit;
         case NLOPT_ROUNDOFF_LIMITED:
             return Ending::RoundoffLimited;
@@ -45,6 +46,7 @@ struct Run {
     nlopt_opt handle;
     double outside;  ///< finite stand-in for minus infinity, which line searches cannot take
     Maximum best;
+    int since_best = 0;
     VectorXd x;
     VectorXd gradient;
     std::exception_ptr error;
@@ -67,10 +69,13 @@ struct Run {
         x = Eigen::Map<const VectorXd>(point, x.size());
         const double value = problem.value(x, slope == nullptr ? nullptr : &gradient);
         if (slope != nullptr) Eigen::Map<VectorXd>(slope, x.size()) = gradient;
+        ++since_best;
         if (value > best.value && is_feasible()) {
             best.x = x;
             best.value = value;
+            since_best = 0;
         }
+        if (since_best > options.patience) nlopt_force_stop(handle);
         if (options.stop.is_set()) nlopt_force_stop(handle);
         return std::isfinite(value) ? value : outside;
     }

@@ -30,6 +30,8 @@ struct MaximiseOptions {
     double step_tolerance = 1e-9;    ///< change of every coordinate to stop at
     double first_step = 0;           ///< of derivative-free methods; 0: theirs
     int evaluation_limit = 1000;
+    /// Evaluations in a row without a better feasible point to give up after.
+    int patience = std::numeric_limits<int>::max();
     StopSignal stop{};
 };
 

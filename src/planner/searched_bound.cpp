@@ -70,6 +70,11 @@ Maximum climb(const DesignSpace& space, const MatrixXd& Z, const VectorXd& start
     MaximiseOptions options;
     options.stop = stop;
     options.value_tolerance = 1e-9;
+    if (space.margin) {
+        options.value_tolerance = 1e-6;
+        options.evaluation_limit = 100;
+        options.patience = 12;  // beyond the constraint nothing is to be found
+    }
     Maximum best = maximise(problem, start, options);  // the best feasible point met
     if (!space.margin) return best;
     options.method = Method::Cobyla;
