@@ -202,6 +202,41 @@ TEST(FormatCalibration, ShowsWhatAnotherInstrumentJudgesInItsOwnUnits) {
               calibration.expected_robot->calibrated >= calibration.expected_robot->nominal);
 }
 
+TEST(AnswerCalibration, SaysWhichPartsOfTheImageCornersCover) {
+    const Campaign seen = testing::before_camera(testing::tracked_campaign(testing::fanuc()),
+                                                 testing::fixed_camera());
+    const Measurements views =
+        simulate(seen, {.pose_count = 30, .repeats = 1, .truth_seed = 2}).measurements;
+    CalibrationOptions options;
+    options.folds = 0;
+    Calibration calibration = calibrate(seen, views, options);
+    const auto text = [&] {
+        for (const Answer& one : answer(calibration)) {
+            if (one.key == "image") return one.text;
+        }
+        return std::string();
+    };
+    ASSERT_EQ(calibration.images.size(), 1U);
+    EXPECT_EQ(text().find("corners of the board cover "), 0U) << text();
+    ImageCoverage& image = calibration.images.front();
+    image.part = 34.0 / 48;
+    image.empty = {"top left", "left", "bottom right"};
+    EXPECT_EQ(text(),
+              "corners of the board cover 71 % of the image, none at its top left, left or bottom "
+              "right");
+    image.part = 1;
+    image.empty.clear();
+    EXPECT_EQ(text(), "corners of the board cover 100 % of the image");
+    calibration.campaign.sensor = std::make_shared<CameraSensor>(testing::three_cameras());
+    calibration.images.push_back({1, {1280, 960}, 8, 6, {}, 0.25, {"middle"}});
+    calibration.images.push_back({2, {1280, 960}, 8, 6, {}, 0, {"middle"}});
+    EXPECT_EQ(text(),
+              "corners of the board cover 100 % of camera 1's image; 25 % of camera 2's image, "
+              "none at its middle; 0 % of camera 3's image");
+    calibration.images.clear();
+    EXPECT_EQ(text(), "");
+}
+
 TEST(FormatCalibration, NeverSaysWithinChanceOfPosesCalibratedWith) {
     const Example example(20);
     const Measurements again =

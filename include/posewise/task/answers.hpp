@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -64,6 +65,20 @@ struct Influence {
     double fit = 0;       ///< RMS of its residuals with itself used, m (rad without lengths)
     double held_out = 0;  ///< predicted without it and, if not `is_alone`, without its group
     bool is_alone = false;
+};
+
+/// Where in a camera's image corners of the board were seen. The image is cut into cells, 8 along
+/// its longer side and 6 along the other.
+struct ImageCoverage {
+    Index camera = 0;              ///< from 0
+    std::array<double, 2> size{};  ///< width and height, px
+    Index columns = 0;
+    Index rows = 0;
+    std::vector<Index> counts;  ///< corners seen in each cell, row by row from the top left
+    double part = 0;            ///< of the cells that have any
+    /// Of nine zones those without any: "top left", "top", ..., "middle". The outer ones are two
+    /// cells wide.
+    std::vector<std::string> empty;
 };
 
 /// An error, m, at a number of poses.

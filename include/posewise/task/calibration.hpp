@@ -164,6 +164,7 @@ struct Calibration {
     std::optional<RobotError> expected_robot{};
     /// At CalibrationOptions::predicted: for distances, for angles.
     std::vector<ErrorPrediction> predicted;
+    std::vector<ImageCoverage> images{};    ///< of cameras: find_image_coverage()
     std::optional<double> limit;            ///< CalibrationOptions::limit
     std::optional<Judgement> verification;  ///< at CalibrationOptions::verification
     std::optional<Judgement> left_out;      ///< at the other configurations not used
@@ -253,6 +254,11 @@ std::vector<ReadingResidual> list_residuals(const Campaign& campaign, const Esti
 /// target and `calibrated` are filled in.
 std::vector<ReadingResidual> list_residuals(const Campaign& campaign, const Parameters& parameters,
                                             const Measurements& measurements);
+
+/// Which parts of its image each camera has seen corners in, all samples; only of cameras whose
+/// image has a stated size.
+std::vector<ImageCoverage> find_image_coverage(const Sensor& sensor,
+                                               const Measurements& measurements);
 
 /// Names of a residual's numbers: "x", "y", "z", "rx", ...; "distance" for readings that are one
 /// length.

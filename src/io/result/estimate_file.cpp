@@ -232,11 +232,18 @@ Json refitted_to_json(const Calibration& calibration) {
     return json;
 }
 
-Json measured_to_json(const MeasuredCount& measured) {
-    return {{"configurations", measured.configurations},
-            {"samples", measured.samples},
-            {"readings", measured.readings},
-            {"readings_seen", measured.readings_seen}};
+Json measured_to_json(const MeasuredCount& measured, const std::vector<ImageCoverage>& images) {
+    Json json = {{"configurations", measured.configurations},
+                 {"samples", measured.samples},
+                 {"readings", measured.readings},
+                 {"readings_seen", measured.readings_seen}};
+    for (const ImageCoverage& image : images) {
+        json["images"].push_back({{"camera", image.camera + 1},
+                                  {"size_px", image.size},
+                                  {"covered", image.part},
+                                  {"empty", image.empty}});
+    }
+    return json;
 }
 
 Json outliers_to_json(const Sensor& sensor, const Estimate& estimate) {
@@ -307,7 +314,7 @@ Json estimate_to_json(const Calibration& calibration, Provenance made_from) {
     document["warnings"] = made_from.warnings;
     detail::provenance_fields(fields, made_from);
     for (const auto& [key, text] : made_from.record) document["record"][key] = text;
-    document["measured"] = measured_to_json(calibration.measured);
+    document["measured"] = measured_to_json(calibration.measured, calibration.images);
     if (!calibration.excluded.empty()) document["excluded"] = calibration.excluded;
     if (!calibration.held.empty()) document["held"] = calibration.held;
     document["method"] = method_name(calibration.method);

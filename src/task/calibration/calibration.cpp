@@ -205,6 +205,7 @@ void calibrate_with(Work& work, Calibration& result) {
         result.influence = detail::find_influence(work.campaign, work.used, left, *held_out);
         result.held_out_interval = detail::held_out_interval(work.campaign, work.used, *held_out);
     }
+    result.images = find_image_coverage(*work.campaign.sensor, work.used);
     result.doubts = find_doubts(work.campaign, work.used, registered, result.nominal);
     if (work.options.earlier) result.doubts.places.clear();  // by moved_since, where it matters
     result.faults =
