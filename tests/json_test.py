@@ -17,6 +17,7 @@ import tempfile
 ROOT, PROGRAM = pathlib.Path(sys.argv[1]).resolve(), str(pathlib.Path(sys.argv[2]).resolve())
 FANUC = ROOT / "designs/fanuc_r2000ic_165f/campaign.yaml"
 CELL = ROOT / "designs/cell_demo/campaign.yaml"
+CAMERAS = ROOT / "designs/camera/fixed_pair.yaml"
 URDF = """<robot name="arm"><link name="base"/><link name="l1"/><link name="l2"/><link name="tool"/>
 <joint name="q1" type="revolute"><parent link="base"/><child link="l1"/><origin xyz="0 0 0.3"/>
 <axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
@@ -292,6 +293,23 @@ def check_calibrate():
     expect(document["doubts"], "calibrate: no doubts about a robot that is 20 mm off")
 
 
+def check_cameras():
+    run("simulate", CAMERAS, "-k", 24, "--truth", 3, "-o", "views.csv")
+    document, text = both("calibrate", CAMERAS, "-m", "views.csv", "-o", "views.json", "--folds", 0)
+    images = document["measured"]["images"]
+    expect([image["camera"] for image in images] == [1, 2], f"calibrate: {images}")
+    for image in images:
+        percent = round(100 * image["covered"])
+        expect(f"{percent} % of camera {image['camera']}'s" in text, f"calibrate: {image}: {text}")
+    document, _ = both("report", "views.json", "-o", "views.html")
+    residuals = document["parts"][0]["residuals"]
+    for image, cells in zip(images, residuals["images"]):
+        counts = cells["counts"]
+        expect(cells["size_px"] == image["size_px"], "report: size of an image")
+        expect(close(image["covered"], sum(count > 0 for count in counts) / len(counts), 9), "report: covered")
+        expect(sum(counts) == residuals["readings"]["camera"].count(image["camera"] - 1), "report: counts")
+
+
 def check_study():
     options = ["-c", "d,v", "--random", 6, "--splits", 2, "-k", "6,8"]
     document, text = both("study", FANUC, "-m", "s.csv", *options)
@@ -401,7 +419,7 @@ def check_writers():
     for word in sorted(set(re.findall(r'"([a-z][A-Za-z0-9_]*)"', sources)) - OTHER_WORDS):
         expect(word in manual, f"designs/json.md: {word} is not explained")
     for key in (key for keys in MANUAL.values() for key in keys if "<" not in key[-1]):
-        stem = re.sub(r"_(mm|deg|mrad|m|rad)$", "", key[-1].removesuffix("[]"))
+        stem = re.sub(r"_(mm|deg|mrad|px|m|rad)$", "", key[-1].removesuffix("[]"))
         expect(f'"{stem}' in sources, f"designs/json.md: no writer has {key[-1]}")
 
 
@@ -438,7 +456,8 @@ with tempfile.TemporaryDirectory() as folder:
     pathlib.Path("arm.urdf").write_text(URDF)
     pathlib.Path("arm.yaml").write_text(ARM)
     for check in (check_simulate, check_inspect, check_indices, check_select, check_relax, check_verify,
-                  check_calibrate, check_study, check_blocks_study, check_plan, check_program, check_correct, check_export, check_conditions, check_report, check_writers,
+                  check_calibrate, check_cameras, check_study, check_blocks_study, check_plan, check_program, check_correct, check_export,
+                  check_conditions, check_report, check_writers,
                   check_errors, check_threads):
         check()
     expect(PRINTED | {""} == set(MANUAL), f"sections {sorted(MANUAL)}, printed {sorted(PRINTED)}")

@@ -8,6 +8,7 @@ import * as before from './sections/before_after.js';
 import * as budget from './sections/budget.js';
 import * as coverage from './sections/coverage.js';
 import * as map from './sections/error_map.js';
+import * as image from './sections/image.js';
 import * as measured from './sections/measured.js';
 import * as models from './sections/model_selection.js';
 import * as optimality from './sections/optimality.js';
@@ -18,7 +19,24 @@ import * as readBack from './sections/read_back.js';
 import * as residuals from './sections/residual_plots.js';
 import * as verdict from './sections/verdict.js';
 
-const sections = [verdict, poses, accuracy, blocks, before, map, residuals, parameters, models, coverage, budget, optimality, readBack, measured, printed];
+const sections = [
+  verdict,
+  poses,
+  accuracy,
+  blocks,
+  before,
+  map,
+  residuals,
+  image,
+  parameters,
+  models,
+  coverage,
+  budget,
+  optimality,
+  readBack,
+  measured,
+  printed,
+];
 
 /** What a document that was edited by hand breaks is said in its place; the rest of the page stands. */
 function renderOf(section, part, parts) {

@@ -8,6 +8,7 @@
 #include "posewise/io/result_files.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "support/cells.hpp"
+#include "support/sensors.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise::io {
@@ -154,6 +155,51 @@ TEST(ToPage, HasTheSceneAndWhatIsLeftOfReadings) {
     EXPECT_EQ(others["readings"]["residual"], readings["residual"]);
     EXPECT_EQ(others["readings"]["target"], readings["target"]);
     EXPECT_EQ(others["readings"].size(), 2U);
+}
+
+TEST(ToPage, HasThePlacesInTheImageOfEachCamera) {
+    CameraSetup setup = testing::three_cameras();
+    setup.others[1].image.reset();
+    const Campaign campaign =
+        testing::before_camera(testing::tracked_campaign(testing::fanuc()), setup);
+    const Measurements measured = simulate(campaign, {.pose_count = 20, .repeats = 1}).measurements;
+    const std::vector<ReadingResidual> listed =
+        list_residuals(campaign, campaign.nominal, measured);
+    PagePart part = part_of("cameras");
+    part.residuals = page_residuals(testing::tracked_campaign(testing::fanuc()), {}, {});
+    EXPECT_TRUE(part.residuals->images.empty());
+    part.residuals->judged.emplace_back("validation", page_residuals(campaign, measured, listed));
+    const json all = json::parse(to_json(std::vector<PagePart>{part}))["parts"][0]["residuals"];
+    EXPECT_FALSE(all.contains("images"));
+    EXPECT_FALSE(all["readings"].contains("place"));
+
+    const json& shown = all["validation"];
+    ASSERT_EQ(shown["images"].size(), 3U);
+    EXPECT_EQ(shown["images"][1]["size_px"], json({1280.0, 960.0}));
+    EXPECT_EQ(shown["images"][1]["columns"], 8);
+    EXPECT_EQ(shown["images"][1]["counts"].size(), 48U);
+    EXPECT_EQ(shown["images"][2].size(), 1U);
+    const json& readings = shown["readings"];
+    ASSERT_EQ(readings["camera"].size(), listed.size());
+    const Index corners = std::ssize(setup.corners);
+    std::array<double, 3> squares{};
+    std::array<double, 3> counts{};
+    for (std::size_t k = 0; k < listed.size(); ++k) {
+        const ReadingResidual& one = listed[k];
+        const auto camera = static_cast<std::size_t>(one.target / corners);
+        EXPECT_EQ(readings["camera"][k], camera);
+        for (const Index axis : {0, 1}) {
+            EXPECT_NEAR(readings["place"][static_cast<std::size_t>(axis)][k].get<double>(),
+                        1e3 * measured.observation(one.sample, one.target)(axis), 0.0051);
+        }
+        squares[camera] += one.calibrated.squaredNorm();
+        ++counts[camera];
+    }
+    for (std::size_t camera = 0; camera < 3; ++camera) {
+        ASSERT_GT(counts[camera], 0);
+        EXPECT_NEAR(shown["images"][camera]["rms_px"].get<double>(),
+                    1e3 * std::sqrt(squares[camera] / counts[camera]), 1e-9);
+    }
 }
 
 TEST(WritePage, WritesAllOrNothing) {

@@ -103,6 +103,12 @@ struct PageConfigurations {
     RowMatrixXd joints;  ///< ids x joints (and measured torques), rad or m
 };
 
+/// A camera's image, to draw corners in.
+struct PageImage {
+    std::optional<ImageCoverage> coverage;  ///< nothing: the image's size is not stated
+    double rms = 0;                         ///< of the corners' residuals as lengths, px
+};
+
 /// Residuals of the measurements that a calibration was made with.
 struct PageResiduals {
     std::vector<std::string> axes;          ///< residual_axes()
@@ -110,6 +116,7 @@ struct PageResiduals {
     std::vector<std::string> names;         ///< reading_names()
     Measurements measurements;
     std::vector<ReadingResidual> readings;
+    std::vector<PageImage> images{};  ///< of each camera; empty: the sensor is none
     /// "validation", "verification", "left_out": residuals of poses it was judged at.
     std::vector<std::pair<std::string, PageResiduals>> judged{};
 };

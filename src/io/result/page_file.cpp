@@ -8,6 +8,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/io/documents.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 
 namespace posewise::io {
 namespace {
@@ -155,6 +156,7 @@ Json columns_of(const PageResiduals& residuals, auto find, auto write) {
 
 /// Whole nm and nrad are shorter than numbers with a point.
 std::int64_t in_nm(double value) { return std::llround(1e9 * value); }
+constexpr double px = 1e3;  // of pixel_units
 double in_hundredths(double value) { return rounded(value, 1e2); }
 
 Json directions_to_json(const PageResiduals& residuals, double Direction::*part) {
@@ -162,6 +164,20 @@ Json directions_to_json(const PageResiduals& residuals, double Direction::*part)
         if (!reading.direction) return nullptr;
         return rounded((*reading.direction).*part, 1e5);
     });
+}
+
+/// Which camera each corner is seen by, from 0, and where.
+void add_places(Json& readings, const PageResiduals& residuals) {
+    if (residuals.images.empty()) return;
+    const auto corners = std::ssize(residuals.names) / std::ssize(residuals.images);
+    readings["camera"] =
+        column_of(residuals, [&](const ReadingResidual& one) { return one.target / corners; });
+    for (Index axis = 0; axis < std::ssize(residuals.axes); ++axis) {
+        readings["place"].push_back(column_of(residuals, [&](const ReadingResidual& one) {
+            return in_hundredths(px *
+                                 residuals.measurements.observation(one.sample, one.target)(axis));
+        }));
+    }
 }
 
 Json readings_to_json(const PageResiduals& residuals) {
@@ -195,12 +211,24 @@ Json readings_to_json(const PageResiduals& residuals) {
         json["azimuth"] = directions_to_json(residuals, &Direction::azimuth);
         json["elevation"] = directions_to_json(residuals, &Direction::elevation);
     }
+    add_places(json, residuals);
+    return json;
+}
+
+Json image_to_json(const PageImage& image) {
+    Json json = {{"rms_px", image.rms}};
+    if (const auto& coverage = image.coverage) {
+        json["size_px"] = coverage->size;
+        json["columns"] = coverage->columns;
+        json["counts"] = coverage->counts;
+    }
     return json;
 }
 
 Json axes_to_json(const PageResiduals& residuals) {
     Json json = {{"axes", residuals.axes}, {"unit", Json::array()}, {"targets", residuals.names}};
     for (const AmountUnits* const units : residuals.units) json["unit"].push_back(units->error);
+    for (const PageImage& image : residuals.images) json["images"].push_back(image_to_json(image));
     return json;
 }
 
@@ -214,6 +242,7 @@ Json residuals_to_json(const PageResiduals& residuals) {
             column_of(others, [](const ReadingResidual& one) { return one.target; });
         readings["residual"] = columns_of(
             others, [](const ReadingResidual& one) { return &one.calibrated; }, in_nm);
+        add_places(readings, others);
     }
     return json;
 }
@@ -305,13 +334,46 @@ std::string make_page(const std::vector<PagePart>& parts, const std::vector<std:
 
 }  // namespace
 
+namespace {
+
+std::vector<PageImage> page_images(const Sensor& sensor, const Measurements& measurements,
+                                   const std::vector<ReadingResidual>& readings) {
+    std::vector<PageImage> images;
+    const auto* const cameras = dynamic_cast<const CameraSensor*>(&sensor);
+    if (cameras == nullptr) return images;
+    images.resize(static_cast<std::size_t>(cameras->camera_count()));
+    for (const ImageCoverage& one : find_image_coverage(sensor, measurements)) {
+        images[static_cast<std::size_t>(one.camera)].coverage = one;
+    }
+    std::vector<Index> counts(images.size());
+    for (const ReadingResidual& one : readings) {
+        const auto camera = static_cast<std::size_t>(one.target / cameras->corner_count());
+        images[camera].rms += one.calibrated.squaredNorm();
+        ++counts[camera];
+    }
+    for (std::size_t c = 0; c < images.size(); ++c) {
+        if (counts[c] > 0) {
+            images[c].rms = px * std::sqrt(images[c].rms / static_cast<double>(counts[c]));
+        }
+    }
+    return images;
+}
+
+}  // namespace
+
 PageResiduals page_residuals(const Campaign& campaign, const Measurements& measurements,
                              std::vector<ReadingResidual> readings) {
-    PageResiduals residuals{residual_axes(campaign), {}, reading_names(campaign), measurements,
-                            std::move(readings),     {}};
+    PageResiduals residuals{residual_axes(campaign),
+                            {},
+                            reading_names(campaign),
+                            measurements,
+                            std::move(readings),
+                            {},
+                            {}};
     for (Index row = 0; row < campaign.sensor->rows_per_target(); ++row) {
         residuals.units.push_back(&campaign.sensor->units(campaign.sensor->is_angle(row)));
     }
+    residuals.images = page_images(*campaign.sensor, measurements, residuals.readings);
     return residuals;
 }
 

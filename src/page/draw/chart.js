@@ -3,6 +3,7 @@ import { el } from '../core/dom.js';
 import { short } from '../core/format.js';
 import { colour, isOnPaper, onTheme } from '../core/theme.js';
 import { apart, span, ticks } from './canvas.js';
+import { legend } from './legend.js';
 
 const font = '12px system-ui, sans-serif';
 
@@ -55,21 +56,6 @@ function logTicks(low, high) {
   }
   const inside = list.filter((value) => value >= low * 0.999 && value <= high * 1.001);
   return inside.length > 9 ? inside.filter((value) => /^[0.]*1[0.]*$/.test(String(value)) || String(value).startsWith('1e')) : inside;
-}
-
-/** Names of what is drawn, before the picture so that they never lie on it. */
-export function legend(series, bands = []) {
-  const item = (kind, name, label, dash) => {
-    const key = el('span', { class: `key key-${kind}${dash ? ' key-dashed' : ''}` });
-    key.style.setProperty('--key', `var(--${name})`);
-    return el('li', {}, key, label);
-  };
-  return el(
-    'ul',
-    { class: 'legend' },
-    bands.map((one) => item('band', one.colour, one.label)),
-    series.filter((one) => one.label).map((one) => item(one.kind ?? 'line', one.colour, one.label, one.dash)),
-  );
 }
 
 /**

@@ -1,4 +1,5 @@
-import { chart, legend } from './chart.js';
+import { chart } from './chart.js';
+import { legend } from './legend.js';
 
 const colours = ['accent', 'second', 'third', 'fourth', 'muted'];
 

@@ -1,0 +1,91 @@
+import { el } from '../core/dom.js';
+import { figure, lead } from '../core/figure.js';
+import { count, fixed, short } from '../core/format.js';
+import { table } from '../core/table.js';
+import { cellsOf, drawImage, exaggeration, roundBelow } from '../draw/image.js';
+import { legend } from '../draw/legend.js';
+
+export const title = 'Image';
+
+export const isShown = ({ residuals }) => residuals?.images?.length > 0 && residuals.readings?.place !== undefined;
+
+/** Poses by what they were for. */
+const kinds = [
+  ['residuals', 'calibrated with', 'accent'],
+  ['validation', 'validation', 'fourth'],
+  ['verification', 'verification', 'third'],
+  ['left_out', 'not in plan', 'needed'],
+];
+
+/** Corners that a camera has seen, and their residuals, px. */
+export function cornersOf({ readings: { camera, place, residual } }, index) {
+  const corners = camera.map((unused, k) => ({ u: place[0][k], v: place[1][k], du: residual[0][k] / 1e6, dv: residual[1][k] / 1e6 }));
+  return corners.filter((unused, k) => camera[k] === index);
+}
+
+/** The image's size; that of what was seen in it where none is stated. */
+const sizeOf = (image, corners) => image.size_px ?? [Math.max(1, ...corners.map(({ u }) => u)), Math.max(1, ...corners.map(({ v }) => v))];
+
+/** Those of other poses are of the same image if it is as large. */
+function setsOf(residuals, index) {
+  const isSame = (others) => others?.readings.place !== undefined && String(others.images[index]?.size_px) === String(residuals.images[index].size_px);
+  return kinds
+    .map(([key, label, colour]) => [key === 'residuals' ? residuals : residuals[key], label, colour])
+    .filter(([of]) => isSame(of))
+    .map(([of, label, colour]) => ({ label, colour, kind: 'dots', corners: cornersOf(of, index) }))
+    .filter(({ corners }) => corners.length > 0);
+}
+
+function cellTable({ size_px: size, columns, counts }) {
+  const rows = counts.length / columns;
+  const between = (k, all, length) => `${short((k * length) / all, 4)} to ${short(((k + 1) * length) / all, 4)}`;
+  const across = Array.from({ length: columns }, (unused, k) => between(k, columns, size[0]));
+  return table(
+    'Corners calibrated with in each cell of the image',
+    ['v/px by u/px', ...across],
+    Array.from({ length: rows }, (unused, row) => [between(row, rows, size[1]), ...counts.slice(row * columns, (row + 1) * columns).map(String)]),
+  );
+}
+
+function imageFigure(residuals, index) {
+  const image = residuals.images[index];
+  const sets = setsOf(residuals, index);
+  const size = sizeOf(
+    image,
+    sets.flatMap(({ corners }) => corners),
+  );
+  const times = exaggeration(size, image.rms_px);
+  const bar = roundBelow((0.15 * size[0]) / times);
+  const scale = el('span', {});
+  scale.style.setProperty('width', `${(100 * bar * times) / size[0]}%`);
+  const name = residuals.images.length > 1 ? `Camera ${index + 1}: ` : '';
+  const used = cornersOf(residuals, index).length;
+  const others = sets.reduce((sum, { corners }) => sum + corners.length, -used);
+  const of = image.size_px ? `an image of ${size.map((one) => short(one)).join(' x ')} px` : 'an image whose size is not stated';
+  const label = `${name}${count(used, 'corner')} in ${of}, ${fixed(image.rms_px, 2)} px RMS off the place predicted`;
+  return figure(
+    `${label}${others > 0 ? `; ${others} of other poses` : ''}. A dot is where a corner was seen; the line is its residual, from the place predicted towards the one seen, drawn ${short(times)} times as long. The darker a cell, the more corners were calibrated with.`,
+    el(
+      'div',
+      {},
+      sets.length > 1 ? legend(sets) : null,
+      drawImage({ label, size, cells: image.counts ? cellsOf(size, image.columns, image.counts) : [], sets, times }),
+      el('p', { class: 'image-scale' }, scale, `a residual of ${short(bar)} px`),
+    ),
+    image.counts ? [cellTable(image)] : [],
+  );
+}
+
+export function render({ document, residuals }) {
+  const text = document.answers?.find((one) => one.key === 'image')?.text;
+  return el(
+    'div',
+    {},
+    text ? lead(`${text.slice(0, 1).toUpperCase()}${text.slice(1)}.`) : null,
+    el(
+      'div',
+      { class: 'figures' },
+      residuals.images.map((unused, k) => imageFigure(residuals, k)),
+    ),
+  );
+}
