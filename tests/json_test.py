@@ -17,6 +17,7 @@ import tempfile
 ROOT, PROGRAM = pathlib.Path(sys.argv[1]).resolve(), str(pathlib.Path(sys.argv[2]).resolve())
 FANUC = ROOT / "designs/fanuc_r2000ic_165f/campaign.yaml"
 CELL = ROOT / "designs/cell_demo/campaign.yaml"
+CAMERA = ROOT / "designs/camera/campaign.yaml"
 CAMERAS = ROOT / "designs/camera/fixed_pair.yaml"
 URDF = """<robot name="arm"><link name="base"/><link name="l1"/><link name="l2"/><link name="tool"/>
 <joint name="q1" type="revolute"><parent link="base"/><child link="l1"/><origin xyz="0 0 0.3"/>
@@ -71,7 +72,7 @@ def read_manual():
                 key.split(".") for key in re.findall(r"`([^`]+)`", cell[1]))
     keys["page"] = []
     for key in re.findall(r"`([^`]+)`", "".join(re.findall(r"^\| (`.*?`) \|", PAGE_MANUAL, re.MULTILINE))):
-        of_part = key.startswith(("scene", "configurations", "residuals", "error_map"))
+        of_part = key.startswith(("scene", "configurations", "residuals", "expected", "error_map"))
         keys["page"].append((["parts[]"] if of_part else []) + key.split("."))
     return keys
 
@@ -294,6 +295,14 @@ def check_calibrate():
 
 
 def check_cameras():
+    hand_eye = CAMERA.read_text().replace("errors: full", "errors: none").replace("known: false", "known: true")
+    pathlib.Path("eye.yaml").write_text(hand_eye)
+    document, text = both("plan", "eye.yaml", "-k", 4, "--pool", 400, "--starts", 1, "--workspace-poses", 20, "-o", "eye.json")
+    image, = document["images"]
+    expect(f"expected to cover {round(100 * image['covered'])} % of the image" in " ".join(text.split()), f"plan: {text}")
+    shown, _ = both("report", "eye.json", "-o", "eye.html")
+    counts = shown["parts"][0]["expected"]["images"][0]["counts"]
+    expect(close(image["covered"], sum(count > 0 for count in counts) / len(counts), 9), "report: cells of a plan")
     run("simulate", CAMERAS, "-k", 24, "--truth", 3, "-o", "views.csv")
     document, text = both("calibrate", CAMERAS, "-m", "views.csv", "-o", "views.json", "--folds", 0)
     images = document["measured"]["images"]

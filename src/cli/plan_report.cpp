@@ -69,6 +69,7 @@ io::PagePart show_plan(const Plan& plan, const Campaign& campaign, const Plannin
     const bool is_measured = options.held && !campaign.has_nominal_base;
     part.scene = make_scene(campaign, is_measured ? &*options.held : nullptr);
     part.first_pose = plan.poses.front().configuration;
+    part.expected = io::page_expected(campaign, plan);
     part.error_map = map_if_possible([&] { return map_errors(plan, campaign, options); });
     return part;
 }

@@ -8,7 +8,6 @@
 #include "core/names.hpp"
 #include "core/text.hpp"
 #include "posewise/core/types.hpp"
-#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/report/reports.hpp"
 #include "sentences.hpp"
 #include "task/calibration/judgement.hpp"
@@ -289,20 +288,6 @@ std::string judge_residuals(const Calibration& calibration, const ResidualDoubt&
                                            calibration.campaign.sensor->units(doubt.is_angle)));
 }
 
-/// "corners of the board cover 71 % of the image, none at its top left or bottom right".
-std::string describe_images(const Calibration& calibration) {
-    const bool is_alone = camera_count(*calibration.campaign.sensor) == 1;
-    std::string text;
-    for (const ImageCoverage& image : calibration.images) {
-        text += fmt::format("{}{:.0f} % of {} image",
-                            text.empty() ? "corners of the board cover " : "; ", 100 * image.part,
-                            is_alone ? "the" : fmt::format("camera {}'s", image.camera + 1));
-        if (image.part == 0 || image.empty.empty()) continue;
-        text += ", none at its " + detail::list_words(image.empty);
-    }
-    return text;
-}
-
 std::string judge_residuals(const Calibration& calibration) {
     std::string text;
     for (const ResidualDoubt& doubt : calibration.doubts.residuals) {
@@ -346,7 +331,9 @@ std::vector<Answer> answer(const Calibration& calibration) {
     add("influence", "Which pose matters most", describe_influence(calibration, units));
     add("drift", "Drift", describe_order(calibration) + describe_conditions(calibration));
     add("more", "More poses for 20 % less", describe_more(calibration, units));
-    add("image", "Where in the image", describe_images(calibration));
+    add("image", "Where in the image",
+        detail::describe_images("corners of the board cover ", calibration.images,
+                                *calibration.campaign.sensor));
     add("residuals", "Residuals", judge_residuals(calibration));
     add("missing_errors", "Errors left out", describe_missing_errors(calibration));
     add("negative_compliances", "Compliances", judge_compliances(calibration));

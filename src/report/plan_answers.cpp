@@ -8,6 +8,7 @@
 #include "core/text.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/report/reports.hpp"
+#include "posewise/task/calibration.hpp"
 #include "sentences.hpp"
 #include "target_report.hpp"
 
@@ -157,6 +158,12 @@ std::vector<Answer> complete(const Planning& planning, const std::string& accura
     add("limit", "What limits it", describe_limit(planning.budget));
     add("influence", "Which pose matters most", describe_influence(planning));
     add("more", "More poses for 20 % less", more);
+    const Sensor& sensor = *planning.campaign.sensor;
+    add("image", "Where in the image",
+        detail::describe_images(
+            "corners of the board are expected to cover ",
+            find_image_coverage(sensor, expected_readings(planning.campaign, planning.plan)),
+            sensor));
     return answers;
 }
 

@@ -7,8 +7,10 @@
 #include <limits>
 
 #include "core/format.hpp"
+#include "core/text.hpp"
 #include "model/error_class.hpp"
 #include "posewise/core/types.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -102,6 +104,19 @@ std::string describe(const Cure& cure, const Campaign& campaign) {
     return fmt::format("with {}: {} instead of {} {} held out", spell(cure.remedy),
                        format_short(1e3 * cure.after, 3), format_short(1e3 * cure.before, 3),
                        campaign.sensor->main_units().error);
+}
+
+std::string describe_images(const std::string& begin, const std::vector<ImageCoverage>& images,
+                            const Sensor& sensor) {
+    const bool is_alone = camera_count(sensor) == 1;
+    std::string text;
+    for (const ImageCoverage& image : images) {
+        text += fmt::format("{}{:.0f} % of {} image", text.empty() ? begin : "; ", 100 * image.part,
+                            is_alone ? "the" : fmt::format("camera {}'s", image.camera + 1));
+        if (image.part == 0 || image.empty.empty()) continue;
+        text += ", none at its " + list_words(image.empty);
+    }
+    return text;
 }
 
 bool is_model_error_found(const Calibration& calibration) {

@@ -28,6 +28,11 @@ std::string describe_looseness(double efficiency, Index starts_at_best, Index st
 /// "with --exclude 5: 0.16 instead of 38 mm held out".
 std::string describe(const Cure& cure, const Campaign& campaign);
 
+/// "corners of the board cover 71 % of the image, none at its top left or bottom right", after the
+/// words that it shall begin with.
+std::string describe_images(const std::string& begin, const std::vector<ImageCoverage>& images,
+                            const Sensor& sensor);
+
 /// Whether the model error was worth looking for: there are errors of the robot to identify.
 bool is_model_error_found(const Calibration& calibration);
 

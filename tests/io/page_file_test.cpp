@@ -202,6 +202,23 @@ TEST(ToPage, HasThePlacesInTheImageOfEachCamera) {
     }
 }
 
+TEST(ToPage, HasWhereAPlanIsExpectedToShowCorners) {
+    const Campaign points = testing::tracked_campaign(testing::fanuc());
+    const Campaign campaign = testing::before_camera(points, testing::fixed_camera());
+    Plan plan;
+    plan.poses = {{"a", VectorXd::Zero(6), 1, {2, 4, 7}}};
+    EXPECT_FALSE(page_expected(points, plan));
+    PagePart part = part_of("plan");
+    part.expected = page_expected(campaign, plan);
+    const json shown = json::parse(to_json(std::vector<PagePart>{part}))["parts"][0]["expected"];
+    EXPECT_EQ(shown["readings"]["camera"], json({0, 0, 0}));
+    const Measurements expected = expected_readings(campaign, plan);
+    EXPECT_NEAR(shown["readings"]["place"][1][2].get<double>(), 1e3 * expected.observations(0, 15),
+                0.0051);
+    EXPECT_EQ(shown["images"][0]["counts"].size(), 48U);
+    EXPECT_FALSE(shown["images"][0].contains("rms_px"));
+}
+
 TEST(WritePage, WritesAllOrNothing) {
     const TemporaryFolder folder;
     write_page(folder.path("a.html"), {part_of("a")});

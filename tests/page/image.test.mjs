@@ -115,6 +115,19 @@ test('poses that were left out have their own colour where they are of the same 
   assert.equal(second.all('path', 'dots').length, 1);
 });
 
+test('a plan shows where corners are expected', () => {
+  const { images, readings } = residualsOf();
+  const expected = { images: images.map(({ rms_px: unused, ...image }) => image), readings: { camera: readings.camera, place: readings.place } };
+  const [first, second] = render({ document: {}, expected }).all('figure');
+  assert.match(first.all('figcaption')[0].textContent, /^Camera 1: 2 corners expected in an image of 800 x 600 px, if the robot is as/);
+  assert.deepEqual(
+    first.all('path').map(({ attributes: { d } }) => d),
+    ['M10 20h0M700.3 590h0'],
+  );
+  assert.equal(second.all('table').length, 1);
+  assert.ok(isShown({ expected }));
+});
+
 test('an image of no stated size is as large as what was seen; other sensors have none', () => {
   const residuals = residualsOf();
   residuals.images = [{ rms_px: 0.5 }, { rms_px: 0 }];

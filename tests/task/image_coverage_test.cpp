@@ -4,6 +4,7 @@
 
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/task/calibration.hpp"
+#include "posewise/task/planning.hpp"
 #include "support/robots.hpp"
 #include "support/sensors.hpp"
 
@@ -70,6 +71,28 @@ TEST(FindImageCoverage, IsOfEachCameraWhoseImageHasASize) {
     EXPECT_EQ(images[1].empty.size(), 8U);
     const Campaign points = tracked_campaign(fanuc());
     EXPECT_TRUE(find_image_coverage(*points.sensor, unseen(*points.sensor)).empty());
+}
+
+TEST(ExpectedReadings, AreTheCornersThatEachPoseShows) {
+    const Campaign campaign = before_camera(tracked_campaign(fanuc()), camera_on_flange());
+    const Sensor& sensor = *campaign.sensor;
+    const Measurements seen = simulate(campaign, {.pose_count = 2, .repeats = 1}).measurements;
+    Plan plan;
+    plan.poses = {{"a", seen.configurations.row(0).transpose(), 1, {}},
+                  {"b", seen.configurations.row(1).transpose(), 2, {3, 5}}};
+    const Measurements expected = expected_readings(campaign, plan);
+    EXPECT_EQ(expected.ids, (std::vector<std::string>{"a", "b"}));
+    EXPECT_EQ(expected.first_sample, (std::vector<Index>{0, 1, 2}));
+    EXPECT_TRUE(expected.is_seen.row(0).all());
+    EXPECT_EQ(targets_seen(expected.is_seen.row(1)), (std::vector<Index>{3, 5}));
+    for (Index i = 0; i < 2; ++i) {
+        const VectorXd q = seen.configurations.row(i).transpose();
+        EXPECT_EQ(expected.configurations.row(i).transpose(), q);
+        EXPECT_EQ(expected.observations.row(i).transpose(),
+                  sensor.predict(world_from_flange(campaign, campaign.nominal, q),
+                                 campaign.nominal.sensor));
+    }
+    EXPECT_EQ(expected_readings(campaign, {}).configuration_count(), 0);
 }
 
 TEST(FindImageCoverage, IsOfWhatWasCalibratedWith) {

@@ -124,6 +124,9 @@ struct PageResiduals {
 PageResiduals page_residuals(const Campaign& campaign, const Measurements& measurements,
                              std::vector<ReadingResidual> readings);
 
+/// Where a plan's poses are expected to show corners, without residuals; nothing: no camera.
+std::optional<PageResiduals> page_expected(const Campaign& campaign, const Plan& plan);
+
 /// One plan, estimate or study.
 struct PagePart {
     std::string title;
@@ -135,6 +138,7 @@ struct PagePart {
     std::optional<VectorXd> first_pose{};  ///< for a plan: where its scene is checked
     PageConfigurations configurations{};   ///< measured ones
     std::optional<PageResiduals> residuals{};
+    std::optional<PageResiduals> expected{};  ///< of a plan: page_expected()
     std::optional<ErrorMap> error_map{};
 };
 

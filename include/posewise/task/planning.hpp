@@ -74,6 +74,10 @@ struct Planning {
 /// that cannot be measured, for fewer poses than identify the parameters, and as plan_poses().
 Planning make_plan(const Campaign& campaign, const PlanningOptions& options);
 
+/// What the poses to calibrate with show of a robot that is as the campaign states it: a sample of
+/// each, without noise; for find_image_coverage().
+Measurements expected_readings(const Campaign& campaign, const Plan& plan);
+
 /// A stored plan that make_plan() made with these options: its predictions, its error budget and
 /// the value of each pose. The pool is unknown; the tour has only its time. Throws InputError as
 /// make_plan(), and if the poses do not identify the parameters.

@@ -237,12 +237,7 @@ Json measured_to_json(const MeasuredCount& measured, const std::vector<ImageCove
                  {"samples", measured.samples},
                  {"readings", measured.readings},
                  {"readings_seen", measured.readings_seen}};
-    for (const ImageCoverage& image : images) {
-        json["images"].push_back({{"camera", image.camera + 1},
-                                  {"size_px", image.size},
-                                  {"covered", image.part},
-                                  {"empty", image.empty}});
-    }
+    if (!images.empty()) json["images"] = detail::images_to_json(images);
     return json;
 }
 

@@ -74,6 +74,17 @@ Json metrics_to_json(const Metrics& metrics) {
     return json;
 }
 
+Json images_to_json(const std::vector<ImageCoverage>& images) {
+    Json list = Json::array();
+    for (const ImageCoverage& image : images) {
+        list.push_back({{"camera", image.camera + 1},
+                        {"size_px", image.size},
+                        {"covered", image.part},
+                        {"empty", image.empty}});
+    }
+    return list;
+}
+
 void add_judgements(Json& accuracy, const Calibration& calibration) {
     Json judged = Json::array();
     const auto add = [&](const std::optional<Judgement>& judgement, const char* poses) {

@@ -216,7 +216,7 @@ Json readings_to_json(const PageResiduals& residuals) {
 }
 
 Json image_to_json(const PageImage& image) {
-    Json json = {{"rms_px", image.rms}};
+    Json json = Json::object();
     if (const auto& coverage = image.coverage) {
         json["size_px"] = coverage->size;
         json["columns"] = coverage->columns;
@@ -228,7 +228,17 @@ Json image_to_json(const PageImage& image) {
 Json axes_to_json(const PageResiduals& residuals) {
     Json json = {{"axes", residuals.axes}, {"unit", Json::array()}, {"targets", residuals.names}};
     for (const AmountUnits* const units : residuals.units) json["unit"].push_back(units->error);
-    for (const PageImage& image : residuals.images) json["images"].push_back(image_to_json(image));
+    for (const PageImage& image : residuals.images) {
+        Json& one = json["images"].emplace_back(image_to_json(image));
+        one["rms_px"] = image.rms;
+    }
+    return json;
+}
+
+Json expected_to_json(const PageResiduals& expected) {
+    Json json = {{"images", Json::array()}, {"readings", Json::object()}};
+    for (const PageImage& image : expected.images) json["images"].push_back(image_to_json(image));
+    add_places(json["readings"], expected);
     return json;
 }
 
@@ -280,6 +290,7 @@ Json part_to_json(const PagePart& part) {
     if (part.scene) json["scene"] = scene_to_json(part);
     if (!part.configurations.ids.empty()) json["configurations"] = configurations_to_json(part);
     if (part.residuals) json["residuals"] = residuals_to_json(*part.residuals);
+    if (part.expected) json["expected"] = expected_to_json(*part.expected);
     if (part.error_map) json["error_map"] = error_map_to_json(*part.error_map);
     return json;
 }
@@ -375,6 +386,20 @@ PageResiduals page_residuals(const Campaign& campaign, const Measurements& measu
     }
     residuals.images = page_images(*campaign.sensor, measurements, residuals.readings);
     return residuals;
+}
+
+std::optional<PageResiduals> page_expected(const Campaign& campaign, const Plan& plan) {
+    if (dynamic_cast<const CameraSensor*>(campaign.sensor.get()) == nullptr) return std::nullopt;
+    const Measurements expected = expected_readings(campaign, plan);
+    std::vector<ReadingResidual> readings;
+    for (Index i = 0; i < expected.configuration_count(); ++i) {
+        for (const Index target : targets_seen(expected.is_seen.row(i))) {
+            ReadingResidual& one = readings.emplace_back();
+            one.configuration = one.sample = i;
+            one.target = target;
+        }
+    }
+    return page_residuals(campaign, expected, std::move(readings));
 }
 
 std::string to_json(const std::vector<PagePart>& parts) {

@@ -17,7 +17,10 @@ const short = (value) => String(Math.round(10 * value) / 10);
 export function pathsOf(corners, times) {
   return {
     dots: corners.map(({ u, v }) => `M${short(u)} ${short(v)}h0`).join(''),
-    lines: corners.map(({ u, v, du, dv }) => `M${short(u)} ${short(v)}l${short(times * du)} ${short(times * dv)}`).join(''),
+    lines: corners
+      .filter(({ du }) => du !== undefined)
+      .map(({ u, v, du, dv }) => `M${short(u)} ${short(v)}l${short(times * du)} ${short(times * dv)}`)
+      .join(''),
   };
 }
 
@@ -39,7 +42,7 @@ export function drawImage({ label, size, cells, sets, times }) {
     svg('rect', { x: 0, y: 0, width: size[0], height: size[1], class: 'frame' }),
     sets.map(({ corners, colour }) => {
       const { dots, lines } = pathsOf(corners, times);
-      return [svg('path', { d: lines, class: `line-${colour}` }), svg('path', { d: dots, class: `dots line-${colour}` })];
+      return [lines ? svg('path', { d: lines, class: `line-${colour}` }) : null, svg('path', { d: dots, class: `dots line-${colour}` })];
     }),
   );
 }

@@ -7,7 +7,9 @@ import { legend } from '../draw/legend.js';
 
 export const title = 'Image';
 
-export const isShown = ({ residuals }) => residuals?.images?.length > 0 && residuals.readings?.place !== undefined;
+const hasPlaces = (of) => of?.images?.length > 0 && of.readings?.place !== undefined;
+
+export const isShown = ({ residuals, expected }) => hasPlaces(residuals) || hasPlaces(expected);
 
 /** Poses by what they were for. */
 const kinds = [
@@ -17,9 +19,9 @@ const kinds = [
   ['left_out', 'not in plan', 'needed'],
 ];
 
-/** Corners that a camera has seen, and their residuals, px. */
+/** Corners that a camera has seen or, of a plan, shall see, and their residuals, px. */
 export function cornersOf({ readings: { camera, place, residual } }, index) {
-  const corners = camera.map((unused, k) => ({ u: place[0][k], v: place[1][k], du: residual[0][k] / 1e6, dv: residual[1][k] / 1e6 }));
+  const corners = camera.map((unused, k) => ({ u: place[0][k], v: place[1][k], ...(residual ? { du: residual[0][k] / 1e6, dv: residual[1][k] / 1e6 } : {}) }));
   return corners.filter((unused, k) => camera[k] === index);
 }
 
@@ -36,14 +38,34 @@ function setsOf(residuals, index) {
     .filter(({ corners }) => corners.length > 0);
 }
 
-function cellTable({ size_px: size, columns, counts }) {
+function cellTable(caption, { size_px: size, columns, counts }) {
+  if (!counts) return null;
   const rows = counts.length / columns;
   const between = (k, all, length) => `${short((k * length) / all, 4)} to ${short(((k + 1) * length) / all, 4)}`;
   const across = Array.from({ length: columns }, (unused, k) => between(k, columns, size[0]));
   return table(
-    'Corners calibrated with in each cell of the image',
+    caption,
     ['v/px by u/px', ...across],
     Array.from({ length: rows }, (unused, row) => [between(row, rows, size[1]), ...counts.slice(row * columns, (row + 1) * columns).map(String)]),
+  );
+}
+
+const cellsIn = ({ size_px: size, columns, counts }) => (counts ? cellsOf(size, columns, counts) : []);
+
+const nameOf = (images, index) => (images.length > 1 ? `Camera ${index + 1}: ` : '');
+
+const describe = (image, size) => (image.size_px ? `an image of ${size.map((one) => short(one)).join(' x ')} px` : 'an image whose size is not stated');
+
+/** Where a plan expects corners. */
+function expectedFigure(expected, index) {
+  const image = expected.images[index];
+  const corners = cornersOf(expected, index);
+  const size = sizeOf(image, corners);
+  const label = `${nameOf(expected.images, index)}${count(corners.length, 'corner')} expected in ${describe(image, size)}`;
+  return figure(
+    `${label}, if the robot is as the campaign states it. The darker a cell, the more corners it has.`,
+    drawImage({ label, size, cells: cellsIn(image), sets: [{ corners, colour: 'accent' }], times: 1 }),
+    [cellTable('Corners expected in each cell of the image', image)],
   );
 }
 
@@ -58,25 +80,23 @@ function imageFigure(residuals, index) {
   const bar = roundBelow((0.15 * size[0]) / times);
   const scale = el('span', {});
   scale.style.setProperty('width', `${(100 * bar * times) / size[0]}%`);
-  const name = residuals.images.length > 1 ? `Camera ${index + 1}: ` : '';
   const used = cornersOf(residuals, index).length;
   const others = sets.reduce((sum, { corners }) => sum + corners.length, -used);
-  const of = image.size_px ? `an image of ${size.map((one) => short(one)).join(' x ')} px` : 'an image whose size is not stated';
-  const label = `${name}${count(used, 'corner')} in ${of}, ${fixed(image.rms_px, 2)} px RMS off the place predicted`;
+  const label = `${nameOf(residuals.images, index)}${count(used, 'corner')} in ${describe(image, size)}, ${fixed(image.rms_px, 2)} px RMS off the place predicted`;
   return figure(
     `${label}${others > 0 ? `; ${others} of other poses` : ''}. A dot is where a corner was seen; the line is its residual, from the place predicted towards the one seen, drawn ${short(times)} times as long. The darker a cell, the more corners were calibrated with.`,
     el(
       'div',
       {},
       sets.length > 1 ? legend(sets) : null,
-      drawImage({ label, size, cells: image.counts ? cellsOf(size, image.columns, image.counts) : [], sets, times }),
+      drawImage({ label, size, cells: cellsIn(image), sets, times }),
       el('p', { class: 'image-scale' }, scale, `a residual of ${short(bar)} px`),
     ),
-    image.counts ? [cellTable(image)] : [],
+    [cellTable('Corners calibrated with in each cell of the image', image)],
   );
 }
 
-export function render({ document, residuals }) {
+export function render({ document, residuals, expected }) {
   const text = document.answers?.find((one) => one.key === 'image')?.text;
   return el(
     'div',
@@ -85,7 +105,7 @@ export function render({ document, residuals }) {
     el(
       'div',
       { class: 'figures' },
-      residuals.images.map((unused, k) => imageFigure(residuals, k)),
+      hasPlaces(residuals) ? residuals.images.map((unused, k) => imageFigure(residuals, k)) : expected.images.map((unused, k) => expectedFigure(expected, k)),
     ),
   );
 }
