@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "blocks_options.hpp"
 #include "common.hpp"
 #include "files.hpp"
@@ -17,6 +19,19 @@ InputPaths paths_of(const std::string& measurements, const PlanSources& sources)
     return {"", measurements, sources.measured_plan, sources.points_unit};
 }
 
+/// Warns of poses that count as measured although calibrate judges on them.
+void warn_of_verification(const std::string& path, const Plan& plan,
+                          const std::vector<std::string>& ids) {
+    const Index count = std::ranges::count_if(plan.verification, [&](const PlannedPose& pose) {
+        return std::ranges::find(ids, pose.id) != ids.end();
+    });
+    if (count == 0) return;
+    print_warning(
+        fmt::format("{}: {} of {} poses were set aside to verify; they are counted here, "
+                    "but calibrate holds them out: leave them out unless it shall not",
+                    path, count, ids.size()));
+}
+
 /// Poses measured already, --augment.
 std::optional<io::MeasurementsFile> read_held(const PlanRequest& request,
                                               const io::CampaignFile& campaign) {
@@ -26,6 +41,7 @@ std::optional<io::MeasurementsFile> read_held(const PlanRequest& request,
     const std::optional<Plan> plan = read_measured_plan(paths, campaign);
     io::MeasurementsFile held = read_measured(sources.augment, campaign, points_of(paths, plan));
     warn_of_counting_twice(sources.estimate, request.earlier.is_prior, sources.augment, held);
+    if (plan && held.is_joined) warn_of_verification(sources.augment, *plan, held.ids);
     return held;
 }
 
@@ -112,6 +128,11 @@ PlanningOptions read_planning_inputs(const PlanRequest& request, const io::Campa
     PlanningOptions options;
     static_cast<PlanRequest&>(options) = request;
     const PlanSources& sources = request.sources;
+    if (!sources.repaired.empty() && sources.repaired == sources.measured_plan) {
+        throw input_error_at({sources.augment},
+                             "was measured at the poses of the plan to repair, which are kept "
+                             "anyway and would count twice; --augment must be left out");
+    }
     if (const auto held = read_held(options, campaign)) {
         const InputPaths paths = paths_of(sources.augment, sources);
         check_needs_unit(paths, held->is_joined);

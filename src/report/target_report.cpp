@@ -162,11 +162,11 @@ const char* name_of(ErrorQuantity quantity) {
 std::string describe_duration(const Planning& planning) {
     const Cell& cell = planning.campaign.cell;
     std::string by_hand;
-    if (cell.target_change > 0) {
-        by_hand = planning.is_target_changed_at_poses
-                      ? ", the reflector moved to each target at each pose"
-                      : fmt::format(", {} runs, the reflector moved between them",
-                                    planning.campaign.sensor->target_count());
+    if (planning.target_runs > 1 || planning.is_target_changed_at_poses) {
+        by_hand =
+            planning.is_target_changed_at_poses
+                ? ", the reflector moved to each target at each pose"
+                : fmt::format(", {} runs, the reflector moved between them", planning.target_runs);
     }
     if (cell.stations > 1) by_hand += fmt::format(", all at each of {} stations", cell.stations);
     if (cell.dwell == 0 && cell.settle == 0 && by_hand.empty()) return "";

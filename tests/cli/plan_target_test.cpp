@@ -96,7 +96,8 @@ TEST_F(PlanTarget, DwellIsTimeAtEachPose) {
               std::string::npos)
         << by_hand;
     write_text("c.yaml", campaign + "cell: {stations: 0}\n");
-    expect_input_error("plan c.yaml -k 8" + quick, "stations is 0; must be from 1 to 100");
+    expect_input_error("plan c.yaml -k 8" + quick,
+                       "stations is 0; must be a whole number from 1 to 100");
     write_text("c.yaml", campaign + "cell: {dwell_s: -4}\n");
     expect_input_error("plan c.yaml -k 8" + quick, "dwell_s is -4; must be from 0 to 86400");
 }

@@ -228,6 +228,14 @@ TEST_F(Points, AreChosenFromAndCountAsMeasured) {
         "plan c.yaml -k 4 --augment few_table.csv --augment-plan poses.csv -o l.json",
         "few_table.csv: has joint values of its own; --augment-plan must be left");
     EXPECT_EQ(run("plan c.yaml -k 4 --augment-plan poses.csv").code, 2);
+    expect_input_error(
+        "plan c.yaml --plan plan.json --drop p2 --augment few.csv --augment-plan plan.json -o "
+        "l.json",
+        "would count twice; --augment must be left out");
+    EXPECT_NE(run("plan c.yaml -k 4 --prior" + quick +
+                  "--augment few.csv --augment-plan plan.json -o l.json")
+                  .err.find("few.csv: 3 of 3 poses were set aside to verify"),
+              std::string::npos);
     for (const std::string plan : {"a.json", "j.json", "c.json", "f.json"})
         EXPECT_EQ(run("verify " + plan).code, 0);
     run_well("report a.json -o a.html");

@@ -117,6 +117,8 @@ TEST_F(MakePlan, TakesTheTimeOfWhatIsDoneByHand) {
     const auto [at_poses, at_each] = time(1e-3);
     EXPECT_NEAR(at_poses, moves + 4 * (1 + 3 * 2 + 2e-3), 1e-9);
     EXPECT_TRUE(at_each);
+    cell.target_change = 0;
+    EXPECT_EQ(judge_again(once.plan, campaign_, options_).target_runs, 1);
     cell.stations = 2;
     cell.station_change = 600;
     EXPECT_NEAR(time(0).first, 2 * once.duration + 600, 1e-9);

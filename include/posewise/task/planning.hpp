@@ -64,6 +64,7 @@ struct Planning {
     /// Whether the only reflector is moved by hand at each pose, since that is quicker than one run
     /// for each target.
     bool is_target_changed_at_poses = false;
+    Index target_runs = 1;  ///< else: runs through all poses at each station, one for each target
     std::optional<ErrorsLeftOut> left_out;    ///< nothing: none that matter, or an estimate tells
     std::optional<RobotError> robot_alone{};  ///< over the workspace, where pixels are measured
 };

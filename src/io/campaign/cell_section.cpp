@@ -279,10 +279,10 @@ void read_motion(const YamlMap& map, const Chain& robot, Cell& cell) {
     cell.settle = read_standstill(map, "settle_s");
     cell.target_change = read_standstill(map, "target_change_s");
     if (const auto stations = map.find("stations")) {
-        constexpr std::uint64_t most = 100;
-        const std::uint64_t count = stations->natural_number();
-        if (count < 1 || count > most) {
-            throw stations->error("is " + stations->text() + "; must be from 1 to 100");
+        const double count = stations->number();
+        if (!(count >= 1 && count <= 100 && count == std::floor(count))) {
+            throw stations->error("is " + stations->text() +
+                                  "; must be a whole number from 1 to 100");
         }
         cell.stations = static_cast<Index>(count);
     }

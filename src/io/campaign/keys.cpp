@@ -428,12 +428,15 @@ const YamlKeys cell{
         {"dwell_s", "",
          "how long the robot stands still for each sample, for the time a plan takes", "0", "`4`"},
         {"target_change_s", "",
-         "how long it takes to move the only reflector by hand to another target, likewise",
+         "how long it takes to move the only reflector by hand to another target: a plan's time "
+         "has the cheaper of one run for each target and moving it at every pose",
          "0: a reflector each", "`40`"},
         {"stations", "",
-         "how many places the instrument is set up at; all poses are measured from each", "1",
-         "`2`"},
-        {"station_change_s", "", "how long it takes to set it up at the next", "0", "`1200`"},
+         "how many places the instrument is set up at, one after the other; a plan's time has all "
+         "poses at each, its accuracy is that of one",
+         "1", "`2`"},
+        {"station_change_s", "", "how long it takes to set the instrument up at its next station",
+         "0", "`1200`"},
     }};
 
 const YamlKeys joint_sum{

@@ -92,8 +92,8 @@ Plan make_result(const PlanningProblem& problem, const PlannedPoses& planned, co
         has_repeats(planned.configurations, problem.search.held.configurations,
                     distance_from_others)) {
         plan.cell_doubts.push_back(
-            fmt::format("the pool has too few poses that are {:g} deg apart in some joint; where "
-                        "two are nearer, what the model lacks is counted as independent but is not",
+            fmt::format("no plan was found whose poses are {:g} deg apart in some joint; where two "
+                        "are nearer, what the model lacks is counted as independent but is not",
                         to_degrees(distance_from_others)));
     }
     return plan;
@@ -137,6 +137,15 @@ void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out
     const CampaignTime time = campaign_time(problem, planning.tour.time, std::ssize(poses));
     planning.duration = time.total;
     planning.is_target_changed_at_poses = time.is_target_changed_at_poses;
+    planning.target_runs = has_one_reflector(campaign) && !time.is_target_changed_at_poses
+                               ? campaign.sensor->target_count()
+                               : 1;
+}
+
+bool has_one_reflector(const Campaign& campaign) {
+    const Sensor& sensor = *campaign.sensor;
+    return campaign.cell.target_change > 0 && sensor.observes_targets() &&
+           sensor.target_count() > 1;
 }
 
 CampaignTime campaign_time(const PlanningProblem& problem, double moves, Index poses) {
@@ -144,7 +153,7 @@ CampaignTime campaign_time(const PlanningProblem& problem, double moves, Index p
     const auto count = static_cast<double>(poses);
     const double samples = cell.dwell * problem.request.repeats;
     CampaignTime time{moves + count * (cell.settle + samples), false};
-    if (cell.target_change > 0) {
+    if (has_one_reflector(problem.campaign)) {
         const auto targets = static_cast<double>(problem.campaign.sensor->target_count());
         const double changes = (targets - 1) * cell.target_change;
         const double in_runs = targets * time.total + changes;
@@ -240,12 +249,16 @@ PlannedPoses PlanMaker::plan_apart(Candidates& from, const PlanOptions& search) 
         !has_repeats(planned.configurations, measured, distance_from_others)) {
         return planned;
     }
-    from.space.least_joint_distance = distance_from_others;
-    try {
-        return plan_poses(from.space, from.configurations, from.blocks, search);
-    } catch (const InputError&) {  // so many poses are not apart; make_result() tells
-        return planned;
+    constexpr double least = to_radians(0.5);
+    for (double distance = distance_from_others; distance > least; distance /= 2) {
+        from.space.least_joint_distance = distance;
+        try {
+            return plan_poses(from.space, from.configurations, from.blocks, search);
+        } catch (const InputError&) {
+            // So many poses so far apart were not found.
+        }
     }
+    return planned;
 }
 
 void PlanMaker::add_verification(Planning& planning) const {

@@ -255,8 +255,9 @@ class Search {
         if (!is_one_kept) check_stop();
         if (!has_limit() && !is_one_kept) {
             throw InputError(fmt::format(
-                "{:g} min are too short: {}, the least number of poses, take {:.2g} min",
-                *target_.duration / 60, least_, result_.planning->duration / 60));
+                "{:g} min are too short: {}, the least number of poses, take {:.10g} min",
+                *target_.duration / 60, least_,
+                std::ceil(result_.planning->duration / 60 * 100) / 100));
         }
         result_.ending = TargetEnding::Reached;
         if (!is_one_kept) result_.ending = TargetEnding::TooManyPoses;
