@@ -138,8 +138,8 @@ double needed_clearance(Eigen::Ref<VectorXd> clearances, Index needed) {
     return *nth;
 }
 
-ShownPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, Index count,
-                        std::uint64_t seed) {
+ViewedPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, Index count,
+                         std::uint64_t seed) {
     const Sensor& sensor = *campaign.sensor;
     std::vector<std::pair<double, Index>> hidden;  // by how much, 0: it is in view
     RowMatrixXd drawn;
@@ -160,13 +160,17 @@ ShownPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, 
         std::ranges::sort(hidden);
         if (hidden[static_cast<std::size_t>(count - 1)].first == 0) break;
     }
-    ShownPoses poses{RowMatrixXd(count, drawn.cols()), Seen(count, sensor.target_count())};
+    ViewedPoses poses{{RowMatrixXd(count, drawn.cols()), Seen(count, sensor.target_count())}, 0};
     for (Index k = 0; k < count; ++k) {
         const auto& [by, i] = hidden[static_cast<std::size_t>(k)];
         poses.configurations.row(k) = drawn.row(i);
         // A corner out of view may be near the camera's plane, where it moves beyond all others.
         poses.is_seen.row(k) = in_view.row(i);
-        if (by > 0) poses.is_seen.row(k).setConstant(true);
+        if (by > 0) {
+            poses.is_seen.row(k).setConstant(true);
+        } else {
+            ++poses.in_view;
+        }
     }
     return poses;
 }

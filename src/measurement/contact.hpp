@@ -41,11 +41,15 @@ std::optional<ShownPoses> touching_poses(const Campaign& campaign, const Paramet
 /// clearances, or the least of fewer. Leaves them in another order.
 double needed_clearance(Eigen::Ref<VectorXd> clearances, Index needed);
 
+struct ViewedPoses : ShownPoses {
+    Index in_view = 0;  ///< the first so many; the others only come nearest to it
+};
+
 /// Random configurations at which a sensor with has_view() has as many targets in view as it needs,
 /// and which targets these are. Where too few do, those that come nearest to it join them; all of
 /// their targets are taken as seen.
-ShownPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, Index count,
-                        std::uint64_t seed);
+ViewedPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, Index count,
+                         std::uint64_t seed);
 
 /// Of random_configurations().
 ShownPoses random_poses(const Campaign& campaign, const Parameters& parameters, Index count,

@@ -157,11 +157,13 @@ InputError few_feasible(const Constraints& constraints, const Pool& pool, Index 
     if (worst == Constraint::KeepOuts || worst == Constraint::SelfCollision) {
         text += most_frequent_collision(constraints);
     }
-    if (count == 0 && worst == Constraint::View) {
-        text += "; where base and the sensor's place are stated to be, no pose looks at the board";
-    } else if (count == 0) {
+    if (count == 0) {
         const bool is_alone = pool.rejections[kinds.front()].in_all == pool.candidate_count;
-        text += is_alone ? "; " + name + " alone leaves nothing" : "; together they leave nothing";
+        text += !is_alone ? "; together they leave nothing"
+                : worst == Constraint::View
+                    ? "; where base and the sensor's place are stated to be, no pose looks at the "
+                      "board"
+                    : "; " + name + " alone leaves nothing";
     }
     return InputError(text + ", so relax " + name + " first");
 }

@@ -60,8 +60,8 @@ struct InverseOptions {
     /// Which joint values will do, such as those of the configuration that a program states; empty:
     /// all.
     std::function<bool(const VectorXd&)> is_wanted = {};
-    /// Searches begin at so many configurations: half of them near the seed, the others all over
-    /// the joint ranges.
+    /// Number of configurations that searches begin at: half are near the seed, the others spread
+    /// over the joint ranges.
     Index start_count = 64;
 };
 

@@ -106,7 +106,7 @@ struct PageConfigurations {
 /// A camera's image, to draw corners in.
 struct PageImage {
     std::optional<ImageCoverage> coverage;  ///< nothing: the image's size is not stated
-    double rms = 0;                         ///< of the corners' residuals as lengths, px
+    double rms = 0;                         ///< lengths of the corners' residuals, px
 };
 
 /// Residuals of the measurements that a calibration was made with.
@@ -116,7 +116,7 @@ struct PageResiduals {
     std::vector<std::string> names;         ///< reading_names()
     Measurements measurements;
     std::vector<ReadingResidual> readings;
-    std::vector<PageImage> images{};  ///< of each camera; empty: the sensor is none
+    std::vector<PageImage> images{};  ///< one a camera; empty: no camera
     /// "validation", "verification", "left_out": residuals of poses it was judged at.
     std::vector<std::pair<std::string, PageResiduals>> judged{};
 };
@@ -138,7 +138,7 @@ struct PagePart {
     std::optional<VectorXd> first_pose{};  ///< for a plan: where its scene is checked
     PageConfigurations configurations{};   ///< measured ones
     std::optional<PageResiduals> residuals{};
-    std::optional<PageResiduals> expected{};  ///< of a plan: page_expected()
+    std::optional<PageResiduals> expected{};  ///< page_expected(); plans only
     std::optional<ErrorMap> error_map{};
 };
 

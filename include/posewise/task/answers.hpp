@@ -75,9 +75,9 @@ struct ImageCoverage {
     Index columns = 0;
     Index rows = 0;
     std::vector<Index> counts;  ///< corners seen in each cell, row by row from the top left
-    double part = 0;            ///< of the cells that have any
-    /// Of nine zones those without any: "top left", "top", ..., "middle". The outer ones are two
-    /// cells wide.
+    double part = 0;            ///< share of the cells that have a corner, 0 to 1
+    /// The zones without a corner, out of nine: "top left", "top", ..., "middle". Outer zones are
+    /// two cells wide.
     std::vector<std::string> empty;
 };
 

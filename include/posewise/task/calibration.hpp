@@ -164,7 +164,7 @@ struct Calibration {
     std::optional<RobotError> expected_robot{};
     /// At CalibrationOptions::predicted: for distances, for angles.
     std::vector<ErrorPrediction> predicted;
-    std::vector<ImageCoverage> images{};    ///< of cameras: find_image_coverage()
+    std::vector<ImageCoverage> images{};    ///< find_image_coverage(), one a camera
     std::optional<double> limit;            ///< CalibrationOptions::limit
     std::optional<Judgement> verification;  ///< at CalibrationOptions::verification
     std::optional<Judgement> left_out;      ///< at the other configurations not used

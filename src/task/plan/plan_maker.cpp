@@ -137,28 +137,24 @@ void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out
     const CampaignTime time = campaign_time(problem, planning.tour.time, std::ssize(poses));
     planning.duration = time.total;
     planning.is_target_changed_at_poses = time.is_target_changed_at_poses;
-    planning.target_runs = has_one_reflector(campaign) && !time.is_target_changed_at_poses
-                               ? campaign.sensor->target_count()
-                               : 1;
-}
-
-bool has_one_reflector(const Campaign& campaign) {
-    const Sensor& sensor = *campaign.sensor;
-    return campaign.cell.target_change > 0 && sensor.observes_targets() &&
-           sensor.target_count() > 1;
+    planning.target_runs = time.target_runs;
 }
 
 CampaignTime campaign_time(const PlanningProblem& problem, double moves, Index poses) {
     const Cell& cell = problem.campaign.cell;
     const auto count = static_cast<double>(poses);
     const double samples = cell.dwell * problem.request.repeats;
-    CampaignTime time{moves + count * (cell.settle + samples), false};
-    if (has_one_reflector(problem.campaign)) {
-        const auto targets = static_cast<double>(problem.campaign.sensor->target_count());
+    CampaignTime time;
+    time.total = moves + count * (cell.settle + samples);
+    const Sensor& sensor = *problem.campaign.sensor;
+    if (cell.target_change > 0 && sensor.observes_targets() && sensor.target_count() > 1) {
+        const auto targets = static_cast<double>(sensor.target_count());
         const double changes = (targets - 1) * cell.target_change;
         const double in_runs = targets * time.total + changes;
         const double at_poses = moves + count * (cell.settle + targets * samples + changes);
-        time = {std::min(in_runs, at_poses), at_poses < in_runs};
+        time.is_target_changed_at_poses = at_poses < in_runs;
+        if (!time.is_target_changed_at_poses) time.target_runs = sensor.target_count();
+        time.total = std::min(in_runs, at_poses);
     }
     const auto stations = static_cast<double>(cell.stations);
     time.total = stations * time.total + (stations - 1) * cell.station_change;

@@ -12,12 +12,10 @@ namespace posewise::detail {
 /// poses, how long it takes.
 void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out_count);
 
-/// Whether it is moved by hand from target to target.
-bool has_one_reflector(const Campaign& campaign);
-
 struct CampaignTime {
     double total = 0;                         ///< s: moves, standstills and what is done by hand
     bool is_target_changed_at_poses = false;  ///< see Planning
+    Index target_runs = 1;                    ///< likewise
 };
 /// `moves`: of one run through all poses, s.
 CampaignTime campaign_time(const PlanningProblem& problem, double moves, Index poses);

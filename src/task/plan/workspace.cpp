@@ -36,34 +36,19 @@ RowMatrixXd workspace_configurations(const Campaign& campaign, const Parameters&
     return workspace_configurations(placed, std::nullopt, count, seed);
 }
 
-namespace {
-
-/// Of viewed_poses(), those that show as much of the board as is needed.
-RowMatrixXd poses_in_view(const Campaign& campaign, const Parameters& parameters, Index count) {
-    const Sensor& sensor = *campaign.sensor;
-    const RowMatrixXd drawn = viewed_poses(campaign, parameters, count, 1).configurations;
-    std::vector<Index> in_view;
-    VectorXd clearances(sensor.target_count());
-    for (Index i = 0; i < drawn.rows(); ++i) {
-        sensor.view_clearances(world_from_flange(campaign, parameters, drawn.row(i).transpose()),
-                               parameters.sensor, clearances);
-        if (needed_clearance(clearances, sensor.least_in_view()) >= 0) in_view.push_back(i);
-    }
-    return drawn(in_view, Eigen::all);
-}
-
-}  // namespace
-
 std::optional<WorkspaceError> expected_workspace_error(const Campaign& campaign,
                                                        const Estimate& estimate) {
     constexpr Index count = 200;
     if (campaign.sensor->has_contacts()) return std::nullopt;
     try {
         // Where a camera does not see the board its pixels say nothing.
-        const RowMatrixXd configurations =
-            campaign.sensor->has_view()
-                ? poses_in_view(campaign, estimate.parameters, count)
-                : workspace_configurations(campaign, estimate.parameters, count, 1);
+        RowMatrixXd configurations;
+        if (campaign.sensor->has_view()) {
+            const ViewedPoses drawn = viewed_poses(campaign, estimate.parameters, count, 1);
+            configurations = drawn.configurations.topRows(drawn.in_view);
+        } else {
+            configurations = workspace_configurations(campaign, estimate.parameters, count, 1);
+        }
         if (configurations.rows() == 0) return std::nullopt;
         WorkspaceError error{
             predict_errors(campaign, estimate, configurations).front().overall, {}, {}};
