@@ -18,6 +18,12 @@ using V2 = VectorOf<2>::type;
 using V4 = VectorOf<4>::type;
 using V8 = VectorOf<8>::type;
 
+/// Floats in as many bytes as V.
+template <typename V>
+struct FloatsOf {
+    using type [[gnu::vector_size(sizeof(V))]] = float;
+};
+
 template <typename V>
 constexpr int width = static_cast<int>(sizeof(V) / sizeof(double));
 constexpr int most_lanes = width<V8>;

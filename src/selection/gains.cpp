@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -18,6 +19,8 @@ constexpr double singular = 1e-13;  // of the information in some direction, lef
 // Relative, above what is lost, so that nothing better is ruled out.
 constexpr double gain_margin = 1e-8;
 constexpr double variance_margin = 1e-7;
+// Four times what single precision may be off by, where it is compared.
+constexpr double rough_margin = 1e-3;
 constexpr double rounding = 1e-13;  // of a sum of eigenvalues
 
 /// What rounding left indefinite, made positive definite.
@@ -45,8 +48,9 @@ RowMatrixXd product_of_columns(const std::vector<MatrixXd>& X, const std::vector
 }  // namespace
 
 Shortlist make_shortlist(const Blocks& candidates, std::vector<Index> members) {
-    Shortlist shortlist{std::move(members), {}};
+    Shortlist shortlist{std::move(members), {}, {}};
     shortlist.lanes = make_lane_blocks(candidates, shortlist.members);
+    shortlist.rough = make_rough(shortlist.lanes);
     return shortlist;
 }
 
@@ -54,11 +58,15 @@ Gains::Gains(const Blocks& candidates, const Shortlist& shortlist)
     : candidates_(candidates),
       shortlist_(shortlist),
       asked_(static_cast<std::size_t>(shortlist.lanes.groups)),
-      gains_(asked_.size()) {}
+      gains_(asked_.size()),
+      rough_gains_(static_cast<std::size_t>(shortlist.rough.groups)) {}
 
 void Gains::find_sensitivities() {
     const auto count = static_cast<Index>(shortlist_.members.size());
     if (shortlist_.lanes.rows > 0) {
+        const Index size = shortlist_.lanes.rows * (shortlist_.lanes.rows + 1) / 2;
+        rough_G_ = make_rough(G_, size);
+        if (!is_determinant()) rough_H_ = make_rough(H_, size);
         sensitivity_ = gram_traces(shortlist_.lanes, is_determinant() ? G_ : H_).head(count);
         return;
     }
@@ -183,6 +191,48 @@ VectorXd Gains::compute(const std::vector<Index>& positions) {
                         .of[static_cast<std::size_t>(at % lane_width)];
     }
     return result;
+}
+
+VectorXd Gains::compute_roughly() {
+    const auto count = static_cast<Index>(shortlist_.members.size());
+    const RoughBlocks& blocks = shortlist_.rough;
+    if (blocks.rows == 0) {
+        std::vector<Index> all(static_cast<std::size_t>(count));
+        std::iota(all.begin(), all.end(), Index{0});
+        return compute(all);
+    }
+    const std::vector<char> asked(rough_gains_.size(), 1);
+    if (is_determinant()) {
+        lane_determinants(blocks, rough_G_, P_, asked, rough_gains_);
+    } else {
+        lane_traces(blocks, rough_G_, rough_H_, P_, Q_, asked, rough_gains_);
+    }
+    return Eigen::Map<const Eigen::VectorXf>(rough_gains_.data()->of.data(), count).cast<double>();
+}
+
+Gains::Largest Gains::largest_of(const std::vector<Index>& positions, const VectorXd& gains) const {
+    Largest largest;
+    for (Index k = 0; k < gains.size(); ++k) {
+        if (!std::isfinite(gains[k]) || gains[k] < least_gain_) continue;
+        if (largest.position >= 0 && gains[k] <= largest.gain) continue;
+        largest = {positions[static_cast<std::size_t>(k)], gains[k]};
+    }
+    return largest;
+}
+
+Gains::Largest Gains::find_largest(const std::vector<Index>& positions) {
+    if (shortlist_.rough.rows > 0 && is_removal_accurate_) {
+        const VectorXd rough = compute_roughly();
+        const double most = rough(positions).maxCoeff();
+        std::vector<Index> near;
+        for (const Index k : positions) {
+            if (!(rough[k] < (1 - rough_margin) * most)) near.push_back(k);
+        }
+        const VectorXd gains = compute(near);
+        const auto error = (rough(near) - gains).cwiseAbs().array();
+        if ((error <= rough_margin / 4 * gains.array()).all()) return largest_of(near, gains);
+    }
+    return largest_of(positions, compute(positions));
 }
 
 std::vector<Index> Gains::keeping_below(double most, const std::vector<RowMatrixXd>& test_poses) {

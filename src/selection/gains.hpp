@@ -7,7 +7,8 @@ namespace posewise::detail {
 /// Candidates to exchange with, prepared once and read by all starts.
 struct Shortlist {
     std::vector<Index> members;
-    LaneBlocks lanes;  ///< empty (rows 0) where the blocks are too high for a kernel
+    LaneBlocks lanes;   ///< empty (rows 0) where the blocks are too high for a kernel
+    RoughBlocks rough;  ///< the same
 };
 Shortlist make_shortlist(const Blocks& candidates, std::vector<Index> members);
 
@@ -43,6 +44,18 @@ class Gains {
     /// For the shortlisted positions asked for: the factor of the determinant, or by how much
     /// trace(C W) falls. Only after remove().
     VectorXd compute(const std::vector<Index>& positions);
+    /// Of all shortlisted positions, in single precision where there are lanes; not a number where
+    /// that does not do.
+    VectorXd compute_roughly();
+
+    struct Largest {
+        Index position = -1;  ///< none: all are below least_gain()
+        double gain = 0;
+    };
+    /// The largest of the gains that compute() finds for these positions, at least one; the first
+    /// of equal ones. Single precision sorts out those that are more than a thousandth below, and
+    /// is believed where the others differ from it by less than a quarter of that.
+    Largest find_largest(const std::vector<Index>& positions);
 
     /// The shortlisted positions with which the variance, trace(B0 M^-1 B0^T), of each of these
     /// test poses may be below `most` in the removed block's place. Only after remove().
@@ -51,6 +64,7 @@ class Gains {
   private:
     bool is_determinant() const { return C_root_.size() == 0; }
     void find_sensitivities();
+    Largest largest_of(const std::vector<Index>& positions, const VectorXd& gains) const;
     MatrixXd apply_W(const MatrixXd& X) const;
     /// WK: [W, W C W], each with zero columns up to whole_columns(); W alone for determinants.
     double compute_plainly(Index position, const RowMatrixXd& WK) const;
@@ -58,10 +72,12 @@ class Gains {
     const Blocks& candidates_;
     const Shortlist& shortlist_;
     MatrixXd C_root_;
-    RowMatrixXd inverse_;   // M^-1
-    RowMatrixXd slope_;     // M^-1 C M^-1
-    LaneGrams G_;           // B_i M^-1 B_i^T
-    LaneGrams H_;           // B_i M^-1 C M^-1 B_i^T
+    RowMatrixXd inverse_;  // M^-1
+    RowMatrixXd slope_;    // M^-1 C M^-1
+    LaneGrams G_;          // B_i M^-1 B_i^T
+    LaneGrams H_;          // B_i M^-1 C M^-1 B_i^T
+    RoughGrams rough_G_;
+    RoughGrams rough_H_;
     VectorXd sensitivity_;  // of the shortlist's members
     double removed_sensitivity_ = 0;
     double least_gain_ = 0;
@@ -72,6 +88,7 @@ class Gains {
     int updates_ = 0;          // since all was computed anew
     std::vector<char> asked_;  // groups of candidates
     std::vector<Lane> gains_;
+    std::vector<RoughLane> rough_gains_;
 };
 
 }  // namespace posewise::detail

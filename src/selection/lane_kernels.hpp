@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <type_traits>
 
 #include "core/simd.hpp"
 #include "lanes.hpp"
@@ -34,25 +35,31 @@ void run_on_lanes(Index groups, const Kernel& kernel) {
 constexpr Index packed(Index a, Index b) { return a * (a + 1) / 2 + b; }
 constexpr int packed_size(int rows) { return rows * (rows + 1) / 2; }
 
-template <typename V>
-POSEWISE_INLINE const V& at(const Lane* lane, int part) {
+/// What lanes L are computed in where doubles are in V: both have as many bytes.
+template <typename L, typename V>
+using VectorIn = std::conditional_t<std::is_same_v<L, Lane>, V, typename simd::FloatsOf<V>::type>;
+template <typename L>
+using NumberIn = typename decltype(L::of)::value_type;
+
+template <typename V, typename L>
+POSEWISE_INLINE const V& at(const L* lane, int part) {
     return *(reinterpret_cast<const V*>(lane) + part);
 }
-template <typename V>
-POSEWISE_INLINE V& at(Lane* lane, int part) {
+template <typename V, typename L>
+POSEWISE_INLINE V& at(L* lane, int part) {
     return *(reinterpret_cast<V*>(lane) + part);
 }
 
 /// X = B P for one group: R x R vectors. P is row-major, zero beyond its first `depth` rows. Rows
 /// of B (`parameters` long) are taken in tiles whose accumulators fit the registers.
-template <int R, typename V>
-POSEWISE_INLINE void multiply(const Lane* B, int part, const double* P, Index parameters,
+template <int R, typename V, typename L>
+POSEWISE_INLINE void multiply(const L* B, int part, const NumberIn<L>* P, Index parameters,
                               Index depth, V (&X)[R][R]) {
     constexpr int tile = simd::width<V> < 8 ? 1 : R % 3 == 0 && R < 12 ? 3 : R % 2 == 0 ? 2 : 1;
     for (int a = 0; a < R; a += tile) {
         V sum[tile][R] = {};
         for (Index l = 0; l < depth; ++l) {
-            const double* p = P + l * R;
+            const NumberIn<L>* p = P + l * R;
 #pragma GCC unroll 4
             for (int t = 0; t < tile; ++t) {
                 const V b = at<V>(B + (a + t) * parameters + l, part);
@@ -79,9 +86,9 @@ POSEWISE_INLINE void add_product(const V (&X)[R][R], const V (&Y)[R][R], V (&S)[
     }
 }
 
-template <int R, typename V>
-POSEWISE_INLINE void load(const LaneGrams& G, Index group, int part, V (&S)[packed_size(R)]) {
-    const Lane* gram = G.data() + group * packed_size(R);
+template <int R, typename V, typename L>
+POSEWISE_INLINE void load(const std::vector<L>& G, Index group, int part, V (&S)[packed_size(R)]) {
+    const L* gram = G.data() + group * packed_size(R);
     for (int k = 0; k < packed_size(R); ++k) S[k] = at<V>(gram + k, part);
 }
 template <int R, typename V>

@@ -1,6 +1,7 @@
 #include "lanes.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "lane_kernels.hpp"
 
@@ -42,17 +43,45 @@ struct UpdateGrams {
     }
 };
 
-/// The product of the pivots of I + G + X X^T.
-template <int R>
-struct Determinants {
-    const LaneBlocks& blocks;
-    const LaneGrams& G;
-    const double* P;
-    std::span<const char> asked;
-    std::span<Lane> result;
+/// Whether lanes in single precision are right to three digits: while elimination makes no pivot of
+/// the `whole` diagonal so many times smaller. Of doubles nothing is asked.
+template <typename L, typename V>
+class Kept {
+  public:
+    POSEWISE_INLINE void add(const V& pivot, const V& whole) {
+        if constexpr (is_rough) {
+            const V left = pivot * most_lost - whole;
+            least_ = left < least_ ? left : least_;
+        }
+    }
+    /// Makes the result not a number where they are not.
+    POSEWISE_INLINE void check(V& result) const {
+        if constexpr (is_rough) {
+            V nothing = {};
+            nothing += std::numeric_limits<float>::quiet_NaN();
+            result = least_ > 0 ? result : nothing;
+        }
+    }
 
-    template <typename V>
+  private:
+    static constexpr bool is_rough = std::is_same_v<L, RoughLane>;
+    static constexpr float most_lost = 2000;
+    V least_ = V{} + NumberIn<L>{1};
+};
+
+/// The product of the pivots of I + G + X X^T.
+template <int R, typename L>
+struct Determinants {
+    const BlocksIn<L>& blocks;
+    const std::vector<L>& G;
+    const NumberIn<L>* P;
+    std::span<const char> asked;
+    std::span<L> result;
+
+    template <typename Doubles>
     POSEWISE_INLINE void run_part(Index g, int part) const {
+        using V = VectorIn<L, Doubles>;
+        constexpr NumberIn<L> one = 1;
         if (asked[static_cast<std::size_t>(g)] == 0) return;
         V X[R][R];
         V S[packed_size(R)];
@@ -61,12 +90,16 @@ struct Determinants {
         load<R, V>(G, g, part, S);
         add_product<R, V>(X, X, S);
         V determinant = {};
-        determinant += 1.0;
+        determinant += one;
+        V whole[R];  // the diagonal
+        Kept<L, V> kept;
+        for (int k = 0; k < R; ++k) whole[k] = S[packed(k, k)] + one;
 #pragma GCC unroll 12
         for (int k = 0; k < R; ++k) {
-            const V pivot = S[packed(k, k)] + 1.0;
-            const V inverse = 1.0 / pivot;
+            const V pivot = S[packed(k, k)] + one;
+            const V inverse = one / pivot;
             determinant *= pivot;
+            kept.add(pivot, whole[k]);
 #pragma GCC unroll 12
             for (int a = k + 1; a < R; ++a) {
                 const V factor = S[packed(a, k)] * inverse;
@@ -74,26 +107,29 @@ struct Determinants {
                 for (int b = k + 1; b <= a; ++b) S[packed(a, b)] -= factor * S[packed(b, k)];
             }
         }
+        kept.check(determinant);
         at<V>(&result[static_cast<std::size_t>(g)], part) = determinant;
     }
 };
 
 /// Eliminates I + G + X X^T and, by the same row and column operations, H + X Y^T + Y X^T, whose
 /// diagonal over the pivots is then the trace.
-template <int R>
+template <int R, typename L>
 struct Traces {
-    const LaneBlocks& blocks;
-    const LaneGrams& G;
-    const LaneGrams& H;
-    const double* P;
-    const double* Q;
+    const BlocksIn<L>& blocks;
+    const std::vector<L>& G;
+    const std::vector<L>& H;
+    const NumberIn<L>* P;
+    const NumberIn<L>* Q;
     std::span<const char> asked;
-    std::span<Lane> result;
+    std::span<L> result;
 
-    template <typename V>
+    template <typename Doubles>
     POSEWISE_INLINE void run_part(Index g, int part) const {
+        using V = VectorIn<L, Doubles>;
+        constexpr NumberIn<L> one = 1;
         if (asked[static_cast<std::size_t>(g)] == 0) return;
-        const Lane* B = blocks.entries.data() + g * R * blocks.parameters;
+        const L* B = blocks.entries.data() + g * R * blocks.parameters;
         V X[R][R];
         V Y[R][R];
         V S[packed_size(R)];
@@ -106,24 +142,33 @@ struct Traces {
         add_product<R, V>(X, Y, T);
         add_product<R, V>(Y, X, T);
         V trace = {};
+        V whole[R];  // the diagonal
+        Kept<L, V> kept;
+        for (int k = 0; k < R; ++k) whole[k] = S[packed(k, k)] + one;
         for (int k = 0; k < R; ++k) {
-            const V inverse = 1.0 / (S[packed(k, k)] + 1.0);
+            const V pivot = S[packed(k, k)] + one;
+            const V inverse = one / pivot;
             const V diagonal = T[packed(k, k)];
+            kept.add(pivot, whole[k]);
             trace += diagonal * inverse;
             V factor[R];
             V reduced[R];
             for (int a = k + 1; a < R; ++a) {
                 factor[a] = S[packed(a, k)] * inverse;
-                reduced[a] = T[packed(a, k)] - 0.5 * factor[a] * diagonal;
+                reduced[a] = T[packed(a, k)] - one / 2 * factor[a] * diagonal;
                 for (int b = k + 1; b <= a; ++b) {
                     S[packed(a, b)] -= factor[a] * S[packed(b, k)];
                     T[packed(a, b)] -= factor[a] * reduced[b] + factor[b] * reduced[a];
                 }
             }
         }
+        kept.check(trace);
         at<V>(&result[static_cast<std::size_t>(g)], part) = trace;
     }
 };
+
+template <typename L>
+using TileIn = Eigen::Matrix<NumberIn<L>, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 }  // namespace
 
@@ -160,6 +205,23 @@ LaneBlocks make_lane_blocks(const Blocks& candidates, std::span<const Index> cho
         }
     }
     return blocks;
+}
+
+std::vector<RoughLane> make_rough(const std::vector<Lane>& lanes, Index size) {
+    const auto count = static_cast<std::size_t>(size);
+    std::vector<RoughLane> rough((lanes.size() / count + 1) / 2 * count);
+    for (std::size_t k = 0; k < lanes.size(); ++k) {
+        const std::size_t group = k / count;
+        float* of = rough[group / 2 * count + k % count].of.data() + group % 2 * lane_width;
+        for (const double number : lanes[k].of) *of++ = static_cast<float>(number);
+    }
+    return rough;
+}
+
+RoughBlocks make_rough(const LaneBlocks& blocks) {
+    if (blocks.rows == 0) return {};
+    return {blocks.rows, blocks.parameters, (blocks.groups + 1) / 2,
+            make_rough(blocks.entries, blocks.rows * blocks.parameters)};
 }
 
 LaneGrams make_grams(const LaneBlocks& blocks, const MatrixXd& F) {
@@ -199,23 +261,33 @@ VectorXd gram_traces(const LaneBlocks& blocks, const LaneGrams& G) {
     return traces;
 }
 
-void lane_determinants(const LaneBlocks& blocks, const LaneGrams& G, const MatrixXd& P,
-                       std::span<const char> asked, std::span<Lane> result) {
-    const RowMatrixXd tile = column_tile(P, 0, blocks.rows);
+template <typename L>
+void lane_determinants(const BlocksIn<L>& blocks, const std::vector<L>& G, const MatrixXd& P,
+                       std::span<const char> asked, std::vector<L>& result) {
+    const TileIn<L> tile = column_tile(P, 0, blocks.rows).template cast<NumberIn<L>>();
     with_height(blocks.rows, [&](auto R) {
-        run_on_lanes(blocks.groups, Determinants<R>{blocks, G, tile.data(), asked, result});
+        run_on_lanes(blocks.groups, Determinants<R, L>{blocks, G, tile.data(), asked, result});
     });
 }
+template void lane_determinants(const LaneBlocks&, const LaneGrams&, const MatrixXd&,
+                                std::span<const char>, std::vector<Lane>&);
+template void lane_determinants(const RoughBlocks&, const RoughGrams&, const MatrixXd&,
+                                std::span<const char>, std::vector<RoughLane>&);
 
-void lane_traces(const LaneBlocks& blocks, const LaneGrams& G, const LaneGrams& H,
+template <typename L>
+void lane_traces(const BlocksIn<L>& blocks, const std::vector<L>& G, const std::vector<L>& H,
                  const MatrixXd& P, const MatrixXd& Q, std::span<const char> asked,
-                 std::span<Lane> result) {
-    const RowMatrixXd tile = column_tile(P, 0, blocks.rows);
-    const RowMatrixXd other = column_tile(Q, 0, blocks.rows);
+                 std::vector<L>& result) {
+    const TileIn<L> tile = column_tile(P, 0, blocks.rows).template cast<NumberIn<L>>();
+    const TileIn<L> other = column_tile(Q, 0, blocks.rows).template cast<NumberIn<L>>();
     with_height(blocks.rows, [&](auto R) {
         run_on_lanes(blocks.groups,
-                     Traces<R>{blocks, G, H, tile.data(), other.data(), asked, result});
+                     Traces<R, L>{blocks, G, H, tile.data(), other.data(), asked, result});
     });
 }
+template void lane_traces(const LaneBlocks&, const LaneGrams&, const LaneGrams&, const MatrixXd&,
+                          const MatrixXd&, std::span<const char>, std::vector<Lane>&);
+template void lane_traces(const RoughBlocks&, const RoughGrams&, const RoughGrams&, const MatrixXd&,
+                          const MatrixXd&, std::span<const char>, std::vector<RoughLane>&);
 
 }  // namespace posewise::detail

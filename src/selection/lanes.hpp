@@ -14,14 +14,22 @@ struct alignas(64) Lane {
 };
 constexpr Index lane_width = 8;
 
+/// The same of sixteen in single precision: twice as quick, to sort out what is worth a Lane.
+struct alignas(64) RoughLane {
+    std::array<float, 16> of{};
+};
+
 /// Blocks of some candidates in lanes: entry (row, parameter) of eight candidates is one Lane.
 /// Lower blocks are padded with zero rows, missing candidates with zero blocks.
-struct LaneBlocks {
+template <typename L>
+struct BlocksIn {
     Index rows = 0;  ///< of every block: one of lane_heights where a kernel needs it
     Index parameters = 0;
-    Index groups = 0;  ///< of eight candidates
-    std::vector<Lane> entries;
+    Index groups = 0;  ///< of as many candidates as a lane has numbers
+    std::vector<L> entries;
 };
+using LaneBlocks = BlocksIn<Lane>;
+using RoughBlocks = BlocksIn<RoughLane>;
 
 /// Block heights there are kernels for.
 constexpr std::array<Index, 6> lane_heights{1, 2, 3, 6, 9, 12};
@@ -33,9 +41,13 @@ Index lane_height(const Blocks& candidates);
 LaneBlocks make_lane_blocks(const Blocks& candidates, std::span<const Index> chosen);
 /// With so many rows, at least those of each of the chosen.
 LaneBlocks make_lane_blocks(const Blocks& candidates, std::span<const Index> chosen, Index rows);
+RoughBlocks make_rough(const LaneBlocks& blocks);
 
 /// Symmetric rows x rows matrices of each candidate, lower triangles in lanes.
 using LaneGrams = std::vector<Lane>;
+using RoughGrams = std::vector<RoughLane>;
+/// `size` lanes a group.
+std::vector<RoughLane> make_rough(const std::vector<Lane>& lanes, Index size);
 
 /// B_i F F^T B_i^T of each candidate (F has `parameters` rows).
 LaneGrams make_grams(const LaneBlocks& blocks, const MatrixXd& F);
@@ -52,14 +64,16 @@ VectorXd gram_traces(const LaneBlocks& blocks, const LaneGrams& G);
 /// det(I + G_i + X_i X_i^T) with X_i = B_i P: how much information each candidate adds, when M^-1 =
 /// F F^T made G and M^-1 + P P^T is the inverse at hand. P is parameters x at most rows. Only
 /// groups with `asked` set are computed; the others give zero.
-void lane_determinants(const LaneBlocks& blocks, const LaneGrams& G, const MatrixXd& P,
-                       std::span<const char> asked, std::span<Lane> result);
+template <typename L>
+void lane_determinants(const BlocksIn<L>& blocks, const std::vector<L>& G, const MatrixXd& P,
+                       std::span<const char> asked, std::vector<L>& result);
 
 /// trace((I + G_i + X_i X_i^T)^-1 (H_i + X_i Y_i^T + Y_i X_i^T)) with Y_i = B_i Q: by how much each
 /// candidate reduces trace(C M^-1), when M^-1 C M^-1 made H and P Q^T + Q P^T is its change.
-void lane_traces(const LaneBlocks& blocks, const LaneGrams& G, const LaneGrams& H,
+template <typename L>
+void lane_traces(const BlocksIn<L>& blocks, const std::vector<L>& G, const std::vector<L>& H,
                  const MatrixXd& P, const MatrixXd& Q, std::span<const char> asked,
-                 std::span<Lane> result);
+                 std::vector<L>& result);
 
 /// A test pose B0 and by how much its variance, trace(B0 W B0^T), is to fall.
 struct Witness {

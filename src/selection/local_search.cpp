@@ -16,6 +16,10 @@ constexpr Index quick_evaluations = 8;
 constexpr Index least_near = 200;
 constexpr Index near_a_pose = 5;
 
+Index near_size(const SearchProblem& problem) {
+    return std::max(least_near, near_a_pose * problem.options.pose_count);
+}
+
 /// One choice being improved.
 class LocalSearch {
   public:
@@ -34,9 +38,9 @@ class LocalSearch {
     }
 
     /// The shortlist of those candidates that come nearest to improving the choice.
-    Shortlist nearest(Index count) {
+    Shortlist nearest() {
         std::vector<Index> members;
-        for (const Index position : neighbourhood_.nearest(choice_.poses, count)) {
+        for (const Index position : neighbourhood_.nearest(choice_.poses, near_size(problem_))) {
             members.push_back(shortlist_.members[static_cast<std::size_t>(position)]);
         }
         return make_shortlist(problem_.candidates, std::move(members));
@@ -253,22 +257,32 @@ ScoredPoses improve(const SearchProblem& problem, const Shortlist& shortlist,
     return search.choice();
 }
 
+bool has_far(const SearchProblem& problem, const Shortlist& shortlist) {
+    return has_exact_gains(problem.objective) &&
+           static_cast<Index>(shortlist.members.size()) > near_size(problem);
+}
+
+Shortlist nearest(const SearchProblem& problem, const Shortlist& shortlist,
+                  const ScoredPoses& choice) {
+    LocalSearch search(problem, shortlist, quick_evaluations);
+    search.start_at(choice);
+    return search.nearest();
+}
+
 ScoredPoses improve_with_kicks(const SearchProblem& problem, const Shortlist& shortlist,
                                const ScoredPoses& choice, RandomStream& random) {
-    const Index near_size = std::max(least_near, near_a_pose * problem.options.pose_count);
-    const bool has_far = has_exact_gains(problem.objective) &&
-                         static_cast<Index>(shortlist.members.size()) > near_size;
+    const bool is_far = has_far(problem, shortlist);
     LocalSearch search(problem, shortlist, quick_evaluations);
     search.start_at(choice);
     search.improve();
     Shortlist near;
     while (true) {
-        if (has_far) near = search.nearest(near_size);
+        if (is_far) near = search.nearest();
         const ScoredPoses best = search.choice();
-        const ScoredPoses kicked = kick(problem, has_far ? near : shortlist, best, random);
+        const ScoredPoses kicked = kick(problem, is_far ? near : shortlist, best, random);
         if (!is_better(kicked.score, best.score)) return best;
         search.start_at(kicked);
-        if (has_far) search.improve();
+        if (is_far) search.improve();
     }
 }
 

@@ -59,10 +59,17 @@ std::vector<Index> take_in_order(const SearchProblem& problem, const std::vector
 ScoredPoses improve(const SearchProblem& problem, const Shortlist& shortlist,
                     const ScoredPoses& choice);
 
+/// Whether gains are exact and the shortlist is long: searches then exchange with the candidates
+/// nearest() first.
+bool has_far(const SearchProblem& problem, const Shortlist& shortlist);
+/// The shortlist of those candidates that come nearest to improving the choice.
+Shortlist nearest(const SearchProblem& problem, const Shortlist& shortlist,
+                  const ScoredPoses& choice);
+
 /// Iterated local search: some poses of the best choice are replaced at random and the result
-/// improved, until `options.kicks` kicks in a row, times the ruggedness, bring nothing. Where gains
-/// are exact and the shortlist is long, what is kicked is improved with the candidates that come
-/// nearest to improving the best, and with the whole shortlist only where that is better.
+/// improved, until `options.kicks` kicks in a row, times the ruggedness, bring nothing. Where the
+/// shortlist has_far(), what is kicked is improved with the candidates nearest() the best, and with
+/// the whole shortlist only where that is better.
 ScoredPoses improve_with_kicks(const SearchProblem& problem, const Shortlist& shortlist,
                                const ScoredPoses& choice, RandomStream& random);
 

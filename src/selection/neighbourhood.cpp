@@ -164,13 +164,11 @@ Neighbourhood::Replacement Neighbourhood::best_by_gains(Index removed, double va
     if (!gains_.remove(B)) return {};
     const std::vector<Index> positions = promising(removed, occupancy);
     if (positions.empty()) return {};
-    std::vector<Ranked> ranked = rank(positions);
-    if (ranked.empty()) return {};
     if (ranking_ == Ranking::Exact) {
-        const auto [position, gain] = ranked.front();
-        if (gain < gains_.least_gain()) return {};
+        const auto [position, gain] = gains_.find_largest(positions);
         return {position, gain > gains_.certain_gain()};
     }
+    std::vector<Ranked> ranked = rank(positions);
     const MatrixXd remaining = M_ - B.transpose() * B;
     Index best = -1;
     std::vector<Index> batch;
@@ -279,13 +277,13 @@ std::vector<Index> Neighbourhood::nearest(const std::vector<Index>& poses, Index
                                            -std::numeric_limits<double>::infinity());
     for (const Index pose : poses) {
         if (!gains_.remove(candidates_[pose])) continue;
-        VectorXd gains = gains_.compute(positions);
+        VectorXd gains = gains_.compute_roughly();
         if (C_root_.size() == 0) {
             gains /= gains_.least_gain();  // factors of the determinant
         } else {
             gains.array() -= gains_.least_gain();
         }
-        nearness = nearness.cwiseMax(gains);
+        nearness = gains.array().isNaN().select(nearness, nearness.cwiseMax(gains));
     }
     std::stable_sort(positions.begin(), positions.end(),
                      [&](Index a, Index b) { return nearness[a] > nearness[b]; });

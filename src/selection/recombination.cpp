@@ -85,6 +85,9 @@ ScoredPoses recombine(const SearchProblem& problem, const Shortlist& shortlist,
     for (const ScoredPoses& choice : choices) population.add(choice);
     const SelectOptions& options = problem.options;
     const auto children = static_cast<Index>(population.members().size());
+    const bool is_far = has_far(problem, shortlist);
+    Poses near_to;  // the best
+    Shortlist near;
     Index unchanged = 0;
     for (Index generation = 0; unchanged < idle_generations && !options.stop.is_set();
          ++generation) {
@@ -93,6 +96,10 @@ ScoredPoses recombine(const SearchProblem& problem, const Shortlist& shortlist,
         if (count < 2) break;
         std::vector<ScoredPoses> born(static_cast<std::size_t>(children));
         const Shortlist known = make_shortlist(problem.candidates, population.poses());
+        if (is_far && near_to != parents.front().poses) {
+            near_to = parents.front().poses;
+            near = nearest(problem, shortlist, parents.front());
+        }
         for_each_index(children, [&](Index child) {
             constexpr Index stream = Index{1} << 32;  // far from those of the starts
             RandomStream random(options.seed,
@@ -103,8 +110,12 @@ ScoredPoses recombine(const SearchProblem& problem, const Shortlist& shortlist,
                       parents[static_cast<std::size_t>(pair[1])].poses, random);
             if (static_cast<Index>(poses.size()) < options.pose_count) return;
             const SearchScore score = problem.score(problem.regularised_information(poses));
-            const ScoredPoses improved = improve(problem, known, {std::move(poses), score});
+            ScoredPoses improved = improve(problem, known, {std::move(poses), score});
             if (population.has(improved.poses)) return;  // nothing improves a member
+            if (is_far) {
+                improved = improve(problem, near, improved);
+                if (!(improved.score.value > parents.back().score.value)) return;
+            }
             born[static_cast<std::size_t>(child)] =
                 judge(problem, improve(problem, shortlist, improved));
         });

@@ -106,6 +106,47 @@ TEST(Gains, RuleOutWhatIsNoBetterThanTheRemovedBlock) {
         });
 }
 
+TEST(Gains, AreFoundLargestWhateverSinglePrecisionSays) {
+    check_gains([](Index rows, const Blocks& candidates, const Shortlist&, const MatrixXd& root) {
+        // Of one pose and one candidate: single precision loses what the others tell beside them.
+        for (const double strength : {1.0, 1e3, 1e6, 1e9}) {
+            Blocks uneven = candidates;
+            for (const Index strong : {5, 25}) {
+                const Index first = uneven.first_row[static_cast<std::size_t>(strong)];
+                uneven.matrix.middleRows(first, rows) *= strength;
+            }
+            const Shortlist shortlist = make_shortlist(uneven, indices_below(40));
+            Gains gains(uneven, shortlist);
+            gains.move_to(information(uneven, indices_below(20)), root);
+            for (Index i = 0; i < 20; ++i) {
+                if (!gains.remove(uneven[i])) continue;
+                const VectorXd all = gains.compute(indices_below(40));
+                Index largest = -1;
+                const double most = all.maxCoeff(&largest);
+                const auto [position, gain] = gains.find_largest(indices_below(40));
+                EXPECT_EQ(position, largest) << rows << ' ' << strength << ' ' << i;
+                EXPECT_EQ(gain, most);
+            }
+        }
+    });
+}
+
+TEST(Gains, AreRoughlyTheSameInSinglePrecision) {
+    check_gains(
+        [](Index rows, const Blocks& candidates, const Shortlist& shortlist, const MatrixXd& root) {
+            Gains gains(candidates, shortlist);
+            gains.move_to(information(candidates, indices_below(20)), root);
+            ASSERT_TRUE(gains.remove(candidates[3]));
+            const VectorXd exact = gains.compute(indices_below(40));
+            const VectorXd rough = gains.compute_roughly();
+            ASSERT_EQ(rough.size(), 40);
+            for (Index i = 0; i < 40; ++i) {
+                EXPECT_NEAR(rough[i], exact[i], 1e-4 * exact[i]) << rows << ' ' << i;
+            }
+            EXPECT_EQ(rows < 13, rough != exact) << rows;
+        });
+}
+
 TEST(Gains, RuleOutExactlyWhatPredictsATestPoseTooBadly) {
     constexpr Index L = 15;
     for (const Index rows : {1, 3, 9, 13}) {  // 13: no kernel, nothing is ruled out
