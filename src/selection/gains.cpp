@@ -115,8 +115,7 @@ void Gains::exchange(const Eigen::Ref<const RowMatrixXd>& added, const MatrixXd&
         slope_ += product_of_columns({P_, Q_, T, S}, {Q_, P_, -S, -T});
     }
     inverse_ += product_of_columns({P_, T}, {P_, -T});
-    update_grams(shortlist_.lanes, P_, Q_, 1, G_, H_);
-    update_grams(shortlist_.lanes, T, S, -1, G_, H_);
+    update_grams(shortlist_.lanes, std::array<GramUpdate, 2>{{{P_, Q_, 1}, {T, S, -1}}}, G_, H_);
     find_sensitivities();
 }
 

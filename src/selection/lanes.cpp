@@ -8,38 +8,45 @@
 namespace posewise::detail {
 namespace {
 
-/// G += sign X X^T and, where there is an H, H += sign (X Y^T + Y X^T). P and Q are zero beyond
-/// their first `depth` rows.
+/// One change of what made grams. P and Q are zero beyond their first `depth` rows.
+struct GramChange {
+    RowMatrixXd P;
+    RowMatrixXd Q;
+    Index depth;
+    double sign;
+};
+
+/// G += sign X X^T and, where there is an H, H += sign (X Y^T + Y X^T), of one change after the
+/// other while a group's blocks are in the cache.
 template <int R>
 struct UpdateGrams {
     const LaneBlocks& blocks;
-    const double* P;
-    const double* Q;
-    Index depth;
-    double sign;
+    const std::vector<GramChange>& changes;
     LaneGrams& G;
     LaneGrams* H;
 
     template <typename V>
     POSEWISE_INLINE void run_part(Index g, int part) const {
         const Lane* B = blocks.entries.data() + g * R * blocks.parameters;
-        V X[R][R];
-        V signed_X[R][R];
-        V S[packed_size(R)];
-        multiply<R, V>(B, part, P, blocks.parameters, depth, X);
-        for (int a = 0; a < R; ++a) {
-            for (int c = 0; c < R; ++c) signed_X[a][c] = sign * X[a][c];
+        for (const GramChange& change : changes) {
+            V X[R][R];
+            V signed_X[R][R];
+            V S[packed_size(R)];
+            multiply<R, V>(B, part, change.P.data(), blocks.parameters, change.depth, X);
+            for (int a = 0; a < R; ++a) {
+                for (int c = 0; c < R; ++c) signed_X[a][c] = change.sign * X[a][c];
+            }
+            load<R, V>(G, g, part, S);
+            add_product<R, V>(signed_X, X, S);
+            store<R, V>(S, g, part, G);
+            if (H == nullptr) continue;
+            V Y[R][R];
+            multiply<R, V>(B, part, change.Q.data(), blocks.parameters, change.depth, Y);
+            load<R, V>(*H, g, part, S);
+            add_product<R, V>(signed_X, Y, S);
+            add_product<R, V>(Y, signed_X, S);
+            store<R, V>(S, g, part, *H);
         }
-        load<R, V>(G, g, part, S);
-        add_product<R, V>(signed_X, X, S);
-        store<R, V>(S, g, part, G);
-        if (H == nullptr) return;
-        V Y[R][R];
-        multiply<R, V>(B, part, Q, blocks.parameters, depth, Y);
-        load<R, V>(*H, g, part, S);
-        add_product<R, V>(signed_X, Y, S);
-        add_product<R, V>(Y, signed_X, S);
-        store<R, V>(S, g, part, *H);
     }
 };
 
@@ -226,25 +233,28 @@ RoughBlocks make_rough(const LaneBlocks& blocks) {
 
 LaneGrams make_grams(const LaneBlocks& blocks, const MatrixXd& F) {
     LaneGrams G(static_cast<std::size_t>(blocks.groups * blocks.rows * (blocks.rows + 1) / 2));
+    std::vector<GramChange> changes;
+    for (Index first = 0; first < F.cols(); first += blocks.rows) {
+        const RowMatrixXd P = column_tile(F, first, blocks.rows);
+        Index depth = P.rows();
+        while (depth > 0 && P.row(depth - 1).isZero(0)) --depth;
+        changes.push_back({P, {}, depth, 1});
+    }
     with_height(blocks.rows, [&](auto R) {
-        for (Index first = 0; first < F.cols(); first += R) {
-            const RowMatrixXd P = column_tile(F, first, R);
-            Index depth = P.rows();
-            while (depth > 0 && P.row(depth - 1).isZero(0)) --depth;
-            run_on_lanes(blocks.groups,
-                         UpdateGrams<R>{blocks, P.data(), nullptr, depth, 1, G, nullptr});
-        }
+        run_on_lanes(blocks.groups, UpdateGrams<R>{blocks, changes, G, nullptr});
     });
     return G;
 }
 
-void update_grams(const LaneBlocks& blocks, const MatrixXd& P, const MatrixXd& Q, double sign,
-                  LaneGrams& G, LaneGrams& H) {
-    const RowMatrixXd tile = column_tile(P, 0, blocks.rows);
-    const RowMatrixXd other = column_tile(Q, 0, blocks.rows);
+void update_grams(const LaneBlocks& blocks, std::span<const GramUpdate> updates, LaneGrams& G,
+                  LaneGrams& H) {
+    std::vector<GramChange> changes;
+    for (const auto& [P, Q, sign] : updates) {
+        changes.push_back(
+            {column_tile(P, 0, blocks.rows), column_tile(Q, 0, blocks.rows), P.rows(), sign});
+    }
     with_height(blocks.rows, [&](auto R) {
-        run_on_lanes(blocks.groups, UpdateGrams<R>{blocks, tile.data(), other.data(), P.rows(),
-                                                   sign, G, H.empty() ? nullptr : &H});
+        run_on_lanes(blocks.groups, UpdateGrams<R>{blocks, changes, G, H.empty() ? nullptr : &H});
     });
 }
 

@@ -52,11 +52,17 @@ std::vector<RoughLane> make_rough(const std::vector<Lane>& lanes, Index size);
 /// B_i F F^T B_i^T of each candidate (F has `parameters` rows).
 LaneGrams make_grams(const LaneBlocks& blocks, const MatrixXd& F);
 
+/// `sign` P P^T and `sign` (P Q^T + Q P^T), added to what made G and H: parameters x at most rows;
+/// Q is empty with H.
+struct GramUpdate {
+    const MatrixXd& P;
+    const MatrixXd& Q;
+    double sign;
+};
 /// G_i += sign X_i X_i^T with X_i = B_i P and, unless H is empty, H_i += sign (X_i Y_i^T + Y_i
-/// X_i^T) with Y_i = B_i Q: the update where `sign` P P^T and `sign` (P Q^T + Q P^T) are added to
-/// what made them. P and Q are parameters x at most rows; Q is empty with H.
-void update_grams(const LaneBlocks& blocks, const MatrixXd& P, const MatrixXd& Q, double sign,
-                  LaneGrams& G, LaneGrams& H);
+/// X_i^T) with Y_i = B_i Q.
+void update_grams(const LaneBlocks& blocks, std::span<const GramUpdate> updates, LaneGrams& G,
+                  LaneGrams& H);
 
 /// The trace of each candidate's matrix, padding included.
 VectorXd gram_traces(const LaneBlocks& blocks, const LaneGrams& G);
