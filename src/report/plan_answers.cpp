@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
 
 #include "core/format.hpp"
 #include "core/text.hpp"
@@ -120,21 +121,30 @@ std::string describe_influence(const Planning& planning) {
                        format_error(planning.plan.predicted->rms, false));
 }
 
-/// Chosen plans are compared with each other, where there are any: planned ones are better.
-std::string describe_more(const std::vector<ErrorAtCount>& chosen,
-                          const std::vector<ErrorAtCount>& planned, Index count,
+/// What is expected by number of poses: as planned where that is known, else as chosen from the
+/// pool, of which planning leaves somewhat less.
+std::vector<ErrorAtCount> best_known(const std::vector<ErrorAtCount>& chosen,
+                                     const std::vector<ErrorAtCount>& planned) {
+    std::map<Index, ErrorAtCount> by_count;
+    for (const ErrorAtCount& one : chosen) by_count[one.pose_count] = one;
+    for (const ErrorAtCount& one : planned) by_count[one.pose_count] = one;
+    std::vector<ErrorAtCount> known;
+    for (const auto& [count, one] : by_count) known.push_back(one);
+    return known;
+}
+
+std::string describe_more(const std::vector<ErrorAtCount>& known, Index count,
                           const ErrorBudget& budget) {
-    const auto found = more_poses(chosen.size() > 1 ? chosen : planned, count);
+    const auto found = more_poses(known, count);
     if (!found || found->most <= count) return "";
-    const std::string ends =
-        detail::describe_ends(found->more, fmt::format("more than {}", found->most - count));
+    const std::string beyond = fmt::format("more than {}", found->most - count);
+    const std::string ends = detail::describe_ends(found->more, beyond);
     if (found->more.expected) {
         return fmt::format("about {} more{}", count_of(*found->more.expected, "new pose"), ends);
     }
     return fmt::format(
-        "no number tried{}: {} leave {:.0f} % of what {} leave; {} would be left if all parameters "
-        "were known",
-        ends, count_of(found->most, "new pose"), 100 * found->ratio, count,
+        "{}{}: {} leave {:.0f} % of what {} leave; {} would be left if all parameters were known",
+        beyond, ends, count_of(found->most, "new pose"), 100 * found->ratio, count,
         format_error(std::hypot(budget.left_over, budget.repeatability), false));
 }
 
@@ -179,12 +189,11 @@ std::vector<Answer> answer(const Planning& planning, const std::vector<CountAccu
         const auto [rms, lower, upper] = predict_total(*one.accuracy);
         (one.is_planned ? planned : chosen).push_back({one.pose_count, rms, lower, upper});
     }
-    std::string more = describe_more(chosen, planned, planning.search.pose_count, planning.budget);
+    std::string more =
+        describe_more(best_known(chosen, planned), planning.search.pose_count, planning.budget);
     if (!more.empty()) {
-        more += fmt::format(
-            "; as expected, between the numbers tried: --target-mm plans for each "
-            "number and keeps its limit with {:g} %",
-            100 * TargetOptions().assurance);
+        more += fmt::format("; --target-mm plans for each number and keeps its limit with {:g} %",
+                            100 * TargetOptions().assurance);
     }
     return complete(planning, sum_up(planning, "RMS", total.rms, total.lower, total.upper),
                     simulated, more);
@@ -201,12 +210,13 @@ std::vector<Answer> answer(const TargetPlanning& found,
         (one.is_planned ? planned : chosen)
             .push_back({one.pose_count, one.error->expected, one.error->lower, one.error->upper});
     }
-    return complete(planning,
-                    sum_up(planning, detail::name_of(found.target.quantity), error.expected,
-                           error.lower, error.upper) +
-                        judge(found, simulated),
-                    simulated,
-                    describe_more(chosen, planned, planning.search.pose_count, planning.budget));
+    return complete(
+        planning,
+        sum_up(planning, detail::name_of(found.target.quantity), error.expected, error.lower,
+               error.upper) +
+            judge(found, simulated),
+        simulated,
+        describe_more(best_known(chosen, planned), planning.search.pose_count, planning.budget));
 }
 
 std::vector<Answer> answer(const Plan& plan) {
