@@ -26,6 +26,7 @@ constexpr const char* calibrate_footer = R"(
 Example:
   posewise calibrate campaign.yaml -m measurements.csv --out estimate.json --report page.html
   posewise calibrate campaign.yaml -m points.txt --points-unit mm --plan plan.json
+  posewise calibrate campaign.yaml -m old.txt --plan old.json -m new.txt --plan new.json
 
 Finds base and targets (or tool; of sockets ball and sockets: they need a column socket instead of
 readings) from nothing, then identifies all parameters together, and prints
@@ -49,6 +50,7 @@ With --exclude it leaves out configurations by their ids and samples (7:2), and 
 -m takes an instrument's list of points, too (name x y z, as SpatialAnalyzer or PolyWorks write it): with
 --plan they get the joint values of the plan's poses by their names (P001_T1: target 1 at pose p1), in
 any order; some may be missing. posewise help measurements says what is read.
+Several -m, each with the --plan at its place, are calibrated together; p1 of old.json is then old/p1.
 With --plan the calibration sees only the plan's configurations. It is judged on those that the plan
 has to verify (plan --verification), as far as they were measured, and on the others, each by itself.
 Where it is judged, and on those of --validate, poses are told apart: new ones, ones beyond the joint
@@ -170,10 +172,12 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     const EarlierArguments& earlier = arguments.earlier;
     const io::CampaignFile file = read_calibrated(arguments);
     const std::optional<Plan> plan = read_measured_plan(paths, file);
-    const Validation validation = read_validation(arguments, file, points_of(paths, plan));
+    const Validation validation = read_validation(
+        arguments, file, paths.parts.empty() ? points_of(paths, plan) : io::PointsSource{});
+    std::vector<std::string> inputs = files_of(paths);
+    inputs.insert(inputs.end(), {arguments.validate, arguments.predict, earlier.from});
     check_outputs(
-        {&file, validation.campaign ? &*validation.campaign : nullptr},
-        {paths.measurements, paths.plan, arguments.validate, arguments.predict, earlier.from},
+        {&file, validation.campaign ? &*validation.campaign : nullptr}, inputs,
         {arguments.out, arguments.predict_out, arguments.csv, arguments.page, arguments.plot},
         common);
     CalibrationOptions options = make_options(arguments, file.seed);
@@ -230,9 +234,15 @@ void add_calibrate(CLI::App& program, const CommonOptions& common) {
     add_campaign_argument(*command, arguments->paths);
     add_measurements_option(*command, arguments->paths);
     add_calibrate_options(*command, *arguments);
+    for (const char* const option : {"--measurements", "--plan"}) {  // see pair_with_plans()
+        command->get_option(option)->multi_option_policy(CLI::MultiOptionPolicy::TakeFirst);
+    }
     command->footer(calibrate_footer);
     command->callback([arguments, command, &common] {
         check_calibrate_usage(*command, *arguments);
+        arguments->paths =
+            pair_with_plans(arguments->paths, command->get_option("--measurements")->results(),
+                            command->get_option("--plan")->results());
         calibrate(*arguments, *command, common);
     });
 }

@@ -21,6 +21,9 @@ struct InputPaths {
     std::string measurements;
     std::string plan{};         ///< whose poses were measured
     std::string points_unit{};  ///< unit of a list of points
+    /// If there are several measurements, each of a plan of its own: theirs, one by one; the names
+    /// above are then all of them, by commas.
+    std::vector<InputPaths> parts{};
 };
 CLI::Option* add_campaign_argument(CLI::App& command, InputPaths& paths);
 CLI::Option* add_measurements_option(CLI::App& command, InputPaths& paths);

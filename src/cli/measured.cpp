@@ -3,7 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
 #include "common.hpp"
+#include "core/text.hpp"
 #include "files.hpp"
 #include "io/format/units.hpp"
 #include "options.hpp"
@@ -21,6 +26,26 @@ void warn_beyond_limits(const std::string& path, const io::CampaignFile& file,
     if (const auto beyond = find_beyond_limits(file, configurations)) {
         print_warning(path + ": " + describe(*beyond, ids));
     }
+}
+
+std::string times(std::size_t count) {
+    return count == 1 ? "once" : detail::count_of(static_cast<Index>(count), "time");
+}
+
+/// Throws InputError if a path was stated before.
+void check_is_new(const std::vector<std::string>& paths, std::size_t place, const char* reason) {
+    const auto here = paths.begin() + static_cast<std::ptrdiff_t>(place);
+    if (std::find(paths.begin(), here, *here) == here) return;
+    throw input_error_at({*here}, fmt::format("is stated twice; must be stated once: {}", reason));
+}
+
+/// "old/p1" for p1 of old.json; with folders where several plans are called so.
+std::string id_among(const InputPaths& all, const InputPaths& part, const std::string& id) {
+    const auto stem = [](const InputPaths& one) {
+        return std::filesystem::path(one.plan).stem().string();
+    };
+    const bool is_clear = std::ranges::count(all.parts, stem(part), stem) == 1;
+    return (is_clear ? stem(part) : part.plan) + '/' + id;
 }
 
 }  // namespace
@@ -58,9 +83,79 @@ void add_points_options(CLI::App& command, std::string& plan, std::string& point
         ->check(CLI::IsMember(detail::unit_names(detail::Quantity::Length)));
 }
 
+InputPaths pair_with_plans(InputPaths paths, const std::vector<std::string>& measurements,
+                           const std::vector<std::string>& plans) {
+    paths.measurements = fmt::format("{}", fmt::join(measurements, ", "));
+    paths.plan = fmt::format("{}", fmt::join(plans, ", "));
+    if (measurements.size() < 2 && plans.size() < 2) return paths;
+    if (measurements.size() != plans.size()) {
+        throw InputError(
+            fmt::format("--measurements is stated {}, --plan {}; must be equally "
+                        "often, so that each file has the plan whose poses it is of",
+                        times(measurements.size()), times(plans.size())));
+    }
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+        check_is_new(plans, i, "repeats need a table with the columns config and sample");
+        check_is_new(measurements, i, "each plan has its own measurements");
+        paths.parts.push_back({paths.campaign, measurements[i], plans[i], paths.points_unit});
+    }
+    return paths;
+}
+
+std::vector<std::string> files_of(const InputPaths& paths) {
+    if (paths.parts.empty()) return {paths.measurements, paths.plan};
+    std::vector<std::string> files;
+    for (const InputPaths& part : paths.parts) {
+        files.insert(files.end(), {part.measurements, part.plan});
+    }
+    return files;
+}
+
 std::optional<Plan> read_measured_plan(const InputPaths& paths, const io::CampaignFile& file) {
     if (paths.plan.empty()) return std::nullopt;
-    return io::read_plan(paths.plan, file);
+    if (paths.parts.empty()) return io::read_plan(paths.plan, file);
+    Plan all;
+    for (const InputPaths& part : paths.parts) {
+        Plan plan = io::read_plan(part.plan, file);
+        const std::string mismatch = describe_mismatch(plan, file);
+        if (!mismatch.empty()) throw input_error_at({part.plan}, mismatch);
+        for (auto* const poses : {&plan.poses, &plan.verification}) {
+            for (PlannedPose& pose : *poses) pose.id = id_among(paths, part, pose.id);
+        }
+        if (all.poses.empty()) {
+            all = std::move(plan);
+            continue;
+        }
+        all.request.pose_count += plan.request.pose_count;
+        std::ranges::move(plan.poses, std::back_inserter(all.poses));
+        std::ranges::move(plan.verification, std::back_inserter(all.verification));
+    }
+    return all;
+}
+
+io::MeasurementsFile read_of_plans(const InputPaths& paths, const io::CampaignFile& file,
+                                   const std::optional<Plan>& plan, MeasurementsReader& read) {
+    if (paths.parts.empty()) return read(paths.measurements, file, points_of(paths, plan));
+    io::MeasurementsFile all;
+    std::vector<Measurements> parts;
+    for (const InputPaths& part : paths.parts) {
+        const Plan own = io::read_plan(part.plan, file);
+        io::MeasurementsFile one = read(part.measurements, file, points_of(part, own));
+        for (std::string& id : one.ids) id = id_among(paths, part, id);
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            if (parts[k].observations.rows() != one.observations.rows() ||
+                parts[k].observations != one.observations) {
+                continue;
+            }
+            throw input_error_at({part.measurements},
+                                 fmt::format("has the same readings as {}; must be others",
+                                             paths.parts[k].measurements));
+        }
+        all.is_joined |= one.is_joined;
+        parts.push_back(std::move(one));
+    }
+    static_cast<Measurements&>(all) = put_together(parts);
+    return all;
 }
 
 io::PointsSource points_of(const InputPaths& paths, const std::optional<Plan>& plan) {
@@ -100,7 +195,7 @@ io::MeasurementsFile read_measured_without(const std::vector<std::string>& exclu
                                            const EarlierArguments& earlier,
                                            const std::optional<Plan>& plan) {
     const std::string& path = paths.measurements;
-    io::MeasurementsFile measured = read_as_stated(path, file, points_of(paths, plan));
+    io::MeasurementsFile measured = read_of_plans(paths, file, plan, read_as_stated);
     warn_of_counting_twice(earlier.from, earlier.is_prior, path, measured);
     static_cast<Measurements&>(measured) =
         compute_from(path, [&] { return leave_out(measured, excluded); });

@@ -25,9 +25,26 @@ std::string describe_unused_planning(const io::CampaignFile& campaign);
 void add_points_options(CLI::App& command, std::string& plan, std::string& points_unit,
                         const std::string& plan_help, const std::string& plan_option = "--plan");
 
-/// The plan that the paths name, if they do: as plan writes it, JSON or CSV.
+/// Paths of several measurements, each of the plan at its place. Throws InputError unless there are
+/// as many plans, and all are different.
+InputPaths pair_with_plans(InputPaths paths, const std::vector<std::string>& measurements,
+                           const std::vector<std::string>& plans);
+
+/// All files that the paths name.
+std::vector<std::string> files_of(const InputPaths& paths);
+
+/// The plan that the paths name, if they do: as plan writes it, JSON or CSV. Several become one,
+/// whose ids have their plan's name before them: old/p1.
 std::optional<Plan> read_measured_plan(const InputPaths& paths, const io::CampaignFile& file);
 io::PointsSource points_of(const InputPaths& paths, const std::optional<Plan>& plan);
+
+/// What `read` finds in the files of the paths, with the ids of read_measured_plan(), which `plan`
+/// is.
+using MeasurementsReader = io::MeasurementsFile(const std::string& path,
+                                                const io::CampaignFile& file,
+                                                const io::PointsSource& points);
+io::MeasurementsFile read_of_plans(const InputPaths& paths, const io::CampaignFile& file,
+                                   const std::optional<Plan>& plan, MeasurementsReader& read);
 
 /// io::read_measurements(). Warns of columns that are not used, of points that are missing, and of
 /// configurations beyond the joint limits, which are taken, since they were measured.

@@ -83,7 +83,8 @@ other places, block by block, until what it finds is sure; a limit that is not k
 --from plans for the robot as an earlier calibration found it, --as-prior for what that left open;
 the 90 % interval is then as narrow as that knows the model error, and sizes that it learned;
 --only base,targets for finding them again after the instrument or the tool was moved.
---augment counts what was measured already. --plan with --drop keeps the other poses of a plan as
+--augment counts what was measured already; calibrate takes both lists of points, each with its plan:
+-m old.txt --plan old.json -m new.txt --plan new.json. --plan with --drop keeps the other poses of a plan as
 they are and finds new ones, at least 5 deg in some joint from those that could not be reached.
 Ctrl-C, SIGTERM or --time end the search with the best plan so far, marked as interrupted; exit
 code 0. Before there is one, while it looks for what is identifiable, they end it with an error.

@@ -123,19 +123,29 @@ io::CampaignFile read_calibrated(const io::EstimateRecord& record, const std::st
     return file;
 }
 
-/// The measurements that it was made with, if they are still the same. Throws InputError otherwise.
-Measurements read_calibrated_with(const io::EstimateRecord& record, const std::string& measurements,
-                                  const std::string& estimate, const io::CampaignFile& file) {
-    InputPaths paths{"", measurements};
+/// The files that it was made with.
+InputPaths find_files(const io::EstimateRecord& record, const std::string& estimate) {
+    InputPaths paths{find_file(record.made_from.campaign_file, estimate), ""};
+    std::vector<std::string> measurements{find_file(record.made_from.measurements, estimate)};
+    std::vector<std::string> plans;
     for (const auto& [name, values] : record.made_from.options) {
         if (values.empty()) continue;
-        if (name == "--plan") paths.plan = find_file(values.front(), estimate);
         if (name == "--points-unit") paths.points_unit = values.front();
+        if (name != "--plan" && (name != "--measurements" || values.size() == 1)) continue;
+        std::vector<std::string>& found = name == "--plan" ? plans : measurements;
+        found.clear();
+        for (const std::string& value : values) found.push_back(find_file(value, estimate));
     }
+    return pair_with_plans(std::move(paths), measurements, plans);
+}
+
+/// The measurements that it was made with, if they are still the same. Throws InputError otherwise.
+Measurements read_calibrated_with(const io::EstimateRecord& record, const InputPaths& paths,
+                                  const io::CampaignFile& file) {
     const std::optional<Plan> plan = read_measured_plan(paths, file);
-    io::MeasurementsFile all = io::read_measurements(measurements, file, points_of(paths, plan));
+    io::MeasurementsFile all = read_of_plans(paths, file, plan, io::read_measurements);
     if (!io::are_of_checksum(record.made_from.measurements_checksum, all, record.excluded)) {
-        throw input_error_at({measurements}, "is not what it was made from any more");
+        throw input_error_at({paths.measurements}, "is not what it was made from any more");
     }
     static_cast<Measurements&>(all) = leave_out(all, record.excluded);
     if (!plan) return all;
@@ -144,17 +154,17 @@ Measurements read_calibrated_with(const io::EstimateRecord& record, const std::s
 
 ShownFile show_estimate_file(const std::string& path) {
     const io::EstimateRecord record = io::read_estimate_record(path);
-    const std::string campaign = find_file(record.made_from.campaign_file, path);
-    const std::string measurements = find_file(record.made_from.measurements, path);
+    const InputPaths paths = find_files(record, path);
     ShownFile shown;
-    shown.read = {campaign, measurements};
+    shown.read = files_of(paths);
+    shown.read.push_back(paths.campaign);
     io::PagePart& part = shown.parts.emplace_back();
     try_to_show(path, "robot and errors are", [&] {
         Estimate estimate;
-        const io::CampaignFile file = read_calibrated(record, campaign, path, estimate);
+        const io::CampaignFile file = read_calibrated(record, paths.campaign, path, estimate);
         std::optional<Measurements> used;
         try_to_show(path, "residuals are",
-                    [&] { used = read_calibrated_with(record, measurements, path, file); });
+                    [&] { used = read_calibrated_with(record, paths, file); });
         part = show_estimate(file, estimate, used ? &*used : nullptr);
         if (!used) return;
         try_to_show(path, "residuals are", [&] {

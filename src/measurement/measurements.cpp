@@ -116,6 +116,40 @@ Measurements take(const Measurements& measurements, const std::vector<Index>& co
     return taken;
 }
 
+Measurements put_together(const std::vector<Measurements>& parts) {
+    Measurements all;
+    const auto append = [](auto& rows, const auto& more) {
+        rows.conservativeResize(rows.rows() + more.rows(), more.cols());
+        rows.bottomRows(more.rows()) = more;
+    };
+    const auto lacks = [&](const auto& is_there) {
+        return !std::all_of(parts.begin(), parts.end(), is_there);
+    };
+    const bool has_names =
+        !lacks([](const Measurements& part) { return !part.sample_names.empty(); });
+    const bool has_angles =
+        !lacks([](const Measurements& part) { return part.roll_pitch_yaw.rows() > 0; });
+    for (const Measurements& part : parts) {
+        append(all.configurations, part.configurations);
+        append(all.observations, part.observations);
+        append(all.is_seen, part.is_seen);
+        all.ids.insert(all.ids.end(), part.ids.begin(), part.ids.end());
+        const Index before = all.first_sample.back();
+        for (std::size_t i = 1; i < part.first_sample.size(); ++i) {
+            all.first_sample.push_back(before + part.first_sample[i]);
+        }
+        if (has_names) {
+            all.sample_names.insert(all.sample_names.end(), part.sample_names.begin(),
+                                    part.sample_names.end());
+        }
+        if (has_angles) {
+            append(all.roll_pitch_yaw, part.roll_pitch_yaw);
+            all.notation = part.notation;
+        }
+    }
+    return all;
+}
+
 std::vector<Index> all_but(Index count, const std::vector<Index>& left_out) {
     std::vector<bool> out(static_cast<std::size_t>(count), false);
     for (const Index i : left_out) out[static_cast<std::size_t>(i)] = true;

@@ -148,6 +148,15 @@ std::string describe_more(const std::vector<ErrorAtCount>& known, Index count,
         format_error(std::hypot(budget.left_over, budget.repeatability), false));
 }
 
+/// How points measured already and those of this plan are calibrated together.
+std::string describe_together(const PlanSources& sources) {
+    if (sources.measured_plan.empty()) return "";
+    return fmt::format(
+        "calibrate with both, each list of points with its plan: -m {} --plan {} -m POINTS --plan "
+        "PLAN, where POINTS are those of this plan",
+        detail::escape_controls(sources.augment), detail::escape_controls(sources.measured_plan));
+}
+
 std::vector<Answer> complete(const Planning& planning, const std::string& accuracy,
                              const std::optional<SimulatedPlan>& simulated,
                              const std::string& more) {
@@ -168,6 +177,7 @@ std::vector<Answer> complete(const Planning& planning, const std::string& accura
     add("limit", "What limits it", describe_limit(planning.budget));
     add("influence", "Which pose matters most", describe_influence(planning));
     add("more", "More poses for 20 % less", more);
+    add("measured", "Measured already", describe_together(planning.plan.request.sources));
     const Sensor& sensor = *planning.campaign.sensor;
     add("image", "Where in the image",
         detail::describe_images(

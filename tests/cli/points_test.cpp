@@ -246,6 +246,68 @@ TEST_F(Points, AreChosenFromAndCountAsMeasured) {
     EXPECT_EQ(run("select c.yaml -m p.csv --points-unit mm -k 6 -o f.json").code, 2);
 }
 
+/// Two plans, whose poses may have the same ids: the points of both are those of one table.
+TEST_F(Points, OfSeveralPlansAreCalibratedTogether) {
+    const auto row = [](const Point& p) { return p.name + ' ' + p.x + ' ' + p.y + ' ' + p.z; };
+    std::vector<std::string> lines;
+    std::istringstream table(text_of("m.csv"));
+    for (std::string line; std::getline(table, line);) {
+        if (line[0] != '#') lines.push_back(line);
+    }
+    // The first 13 of the 21 poses, the others called p1 to p8 again.
+    std::vector<Point> first, second;
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+        const std::size_t pose = k / 3 + 1;
+        Point& point = (pose <= 13 ? first : second).emplace_back(points_[k]);
+        point.name = fmt::format("p{}_t{}", pose <= 13 ? pose : pose - 13, k % 3 + 1);
+    }
+    write_list("old.txt", first, row);
+    write_list("new.txt", second, row);
+    std::string old_plan = lines[0] + '\n', new_plan = old_plan, both = old_plan;
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+        const std::string rest = lines[i].substr(lines[i].find(','));
+        const std::string id = fmt::format("p{}", i <= 13 ? i : i - 13);
+        (i <= 13 ? old_plan : new_plan) += id + rest + '\n';
+        both += fmt::format("{}/{}{}\n", i <= 13 ? "old" : "new", id, rest);
+    }
+    write_text("old.csv", old_plan);
+    write_text("new.csv", new_plan);
+    write_text("both.csv", both);
+    const std::string unit = " --points-unit mm";
+    const std::string pairs = "old.txt --plan old.csv -m new.txt --plan new.csv";
+    EXPECT_EQ(result_of(pairs + unit), result_of("both.csv"));
+    EXPECT_EQ(result_of(pairs + unit + " --exclude new/p2"),
+              result_of("both.csv --exclude new/p2"));
+    EXPECT_EQ(result_of("old.csv --plan old.csv -m new.txt --plan new.csv" + unit),
+              result_of("both.csv"))
+        << "a table beside a list";
+    run_well("calibrate c.yaml -m " + pairs + unit + " -o e.json");
+    const Outcome page = run("report e.json -o e.html");
+    EXPECT_NE(page.out.find("residuals"), std::string::npos) << page.err;
+    const auto refused = [&](const std::string& arguments, const std::string& words) {
+        expect_input_error("calibrate c.yaml -m " + arguments + unit + " -o f.json", words);
+    };
+    refused("old.txt -m new.txt --plan old.csv", "--measurements is stated 2 times, --plan once");
+    refused("old.txt --plan old.csv --plan new.csv",
+            "--measurements is stated once, --plan 2 times");
+    refused("old.txt --plan old.csv -m new.txt --plan old.csv", "old.csv: is stated twice");
+    refused("old.txt --plan old.csv -m old.txt --plan new.csv", "old.txt: is stated twice");
+    write_list("copy.txt", first, row);
+    write_text("copy.csv", old_plan);
+    refused("old.txt --plan old.csv -m copy.txt --plan copy.csv",
+            "copy.txt: has the same readings as old.txt");
+    // Two lists that the same points name: plan says how to go on.
+    write_list(
+        "p.csv", shuffled_,
+        [](const Point& p) { return p.name + ',' + p.x + ',' + p.y + ',' + p.z; },
+        "name,x_mm,y_mm,z_mm\n");
+    const Outcome planned = run("plan c.yaml -k 4" + quick +
+                                "--augment p.csv --augment-plan plan.json -o more.json --json");
+    EXPECT_NE(planned.out.find("-m p.csv --plan plan.json -m POINTS --plan PLAN"),
+              std::string::npos)
+        << planned.out;
+}
+
 TEST_F(Points, WhatIsWrongIsSaidAndNothingWritten) {
     const auto row = [](const Point& p) { return p.name + ' ' + p.x + ' ' + p.y + ' ' + p.z; };
     write_list("p.txt", shuffled_, row);
