@@ -324,6 +324,13 @@ TEST(BadPoints, WithoutAUnitTheOneThatFitsIsNamed) {
                         "x_mm, y_mm, z_mm in a header; they are as far apart as planned if it "
                         "is {}",
                         unit));
+        EXPECT_EQ(read_points(text, unit).ids.size(), planned().poses.size());
+        const std::string wrong = factor > 1 ? "m" : "mm";
+        EXPECT_EQ(input_error_of([&] { read_points(text, wrong); }),
+                  fmt::format("p.txt: its points are in {} as is stated, but as far apart as "
+                              "planned if they are in {}; `points_unit` or the header must state "
+                              "the right unit",
+                              wrong, unit));
     }
     EXPECT_EQ(input_error_of([&] { read_points("P001_T1 1 2 3\nP002_T1 2 3 4\n", ""); }),
               "p.txt: does not state the unit of its points; state `points_unit`, or x_mm, y_mm, "

@@ -47,7 +47,7 @@ class Join {
         } else {
             put_in_order();
         }
-        if (list_.unit == nullptr) throw no_unit();
+        check_unit();
         io::MeasurementsFile file{collect(), std::move(list_.unused), true, describe(is_by_name)};
         return file;
     }
@@ -132,24 +132,35 @@ class Join {
         for (std::size_t k = 0; k < count; ++k) measured_[places[k]] = &list_.points[k];
     }
 
-    /// Says which unit the points would agree with the plan in.
-    InputError no_unit() const {
-        std::string hint;
+    /// Throws InputError if no unit is stated, or if the points are as far apart as planned in
+    /// another one.
+    void check_unit() const {
+        const double ratio = spread_ratio();
+        // Within a fifth, since neither the robot's errors nor targets that are not stated matter
+        // then. Numbers without a unit are as they stand in the file, others in m.
+        const double scale = list_.unit == nullptr ? 1 : list_.unit->to_si(1);
+        std::string fitting;
         for (const std::string& name : unit_names(Quantity::Length)) {
-            if (agrees(*find_unit(name))) {
-                hint = fmt::format("; they are as far apart as planned if it is {}", name);
-            }
+            if (std::abs(find_unit(name)->to_si(ratio / scale) - 1) < 0.2) fitting = name;
         }
-        return input_error_at(
+        if (list_.unit == nullptr) {
+            throw input_error_at(
+                {path_},
+                "does not state the unit of its points; state `points_unit`, or x_mm, "
+                "y_mm, z_mm in a header" +
+                    (fitting.empty() ? ""
+                                     : "; they are as far apart as planned if it is " + fitting));
+        }
+        if (fitting.empty() || fitting == list_.unit->name) return;
+        throw input_error_at(
             {path_},
-            "does not state the unit of its points; state `points_unit`, or x_mm, "
-            "y_mm, z_mm in a header" +
-                hint);
+            fmt::format("its points are in {} as is stated, but as far apart as planned if they "
+                        "are in {}; `points_unit` or the header must state the right unit",
+                        list_.unit->name, fitting));
     }
 
-    /// Whether their spread is that of the plan's points: within a fifth, since neither the
-    /// robot's errors nor targets that are not stated matter then.
-    bool agrees(const Unit& unit) const {
+    /// The spread of the points against that of the plan's.
+    double spread_ratio() const {
         std::vector<Vector3d> measured;
         std::vector<Vector3d> planned;
         for (std::size_t place = 0; place < measured_.size(); ++place) {
@@ -167,8 +178,7 @@ class Join {
             for (const Vector3d& point : points) sum += (point - mean).squaredNorm();
             return std::sqrt(sum);
         };
-        const double ratio = unit.to_si(spread(measured)) / spread(planned);
-        return std::abs(ratio - 1) < 0.2;
+        return spread(measured) / spread(planned);
     }
 
     Measurements collect() const {
