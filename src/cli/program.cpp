@@ -24,6 +24,7 @@
 #include "posewise/io/result_files.hpp"
 #include "posewise/io/robot_programs.hpp"
 #include "posewise/task/planning.hpp"
+#include "report/sentences.hpp"
 
 namespace posewise::cli {
 namespace {
@@ -228,6 +229,7 @@ std::string describe(const io::ProgramReport& report) {
         "{}: {} in {} for {}\n", detail::escape_controls(report.files.front()),
         detail::count_of(report.visit_count, "pose"), detail::count_of(report.stop_count, "move"),
         io::program_format_name(report.format));
+    if (!report.by_hand.empty()) text += "by hand: " + report.by_hand + '\n';
     for (std::size_t k = 1; k < report.files.size(); ++k) {
         text += detail::escape_controls(report.files[k]) + '\n';
     }
@@ -263,6 +265,7 @@ void write_program(const ProgramArguments& arguments, const CommonOptions& commo
     report.format = format;
     report.files = io::program_files(arguments.out, format, program);
     report.sent = sent_path_of(arguments.plan);
+    report.by_hand = detail::describe_by_hand(both.plan, both.campaign.cell);
     report.stop_count = std::ssize(program.stops);
     report.visit_count = std::ranges::count(program.stops, true, &io::ProgramStop::is_measured);
     std::vector<std::string> outputs = report.files;

@@ -22,6 +22,10 @@ bool is_told_by_estimate(const Plan& plan, const KnownWithin& known);
 /// The noise and column scales that whitened, scaled numbers rest on; `repeats` samples each.
 std::string describe_scaling(const Campaign& campaign, double repeats);
 
+/// What is done by hand while a plan is measured: "3 runs, the reflector moved between them, all at
+/// each of 2 stations"; empty: nothing.
+std::string describe_by_hand(const Plan& plan, const Cell& cell);
+
 /// Says, where little is proven about a choice, what tells more; empty where it is nearly optimal.
 std::string describe_looseness(double efficiency, Index starts_at_best, Index starts);
 

@@ -159,21 +159,26 @@ const char* name_of(ErrorQuantity quantity) {
     return quantity == ErrorQuantity::Max ? "maximum" : "95 % of positions";
 }
 
+std::string describe_by_hand(const Plan& plan, const Cell& cell) {
+    std::string text;
+    if (plan.is_target_changed_at_poses) text = "the reflector moved to each target at each pose";
+    if (plan.target_runs > 1) {
+        text = fmt::format("{} runs, the reflector moved between them", plan.target_runs);
+    }
+    if (cell.stations == 1) return text;
+    return fmt::format("{}{}all at each of {} stations", text, text.empty() ? "" : ", ",
+                       cell.stations);
+}
+
 std::string describe_duration(const Planning& planning) {
     const Cell& cell = planning.campaign.cell;
-    std::string by_hand;
-    if (planning.target_runs > 1 || planning.is_target_changed_at_poses) {
-        by_hand =
-            planning.is_target_changed_at_poses
-                ? ", the reflector moved to each target at each pose"
-                : fmt::format(", {} runs, the reflector moved between them", planning.target_runs);
-    }
-    if (cell.stations > 1) by_hand += fmt::format(", all at each of {} stations", cell.stations);
+    const std::string by_hand = describe_by_hand(planning.plan, cell);
     if (cell.dwell == 0 && cell.settle == 0 && by_hand.empty()) return "";
     const std::string settle =
         cell.settle > 0 ? format_short(cell.settle) + " s at each pose and " : "";
-    return fmt::format("time:        {} min with {}{} s for each sample{}\n",
-                       minutes(planning.duration), settle, format_short(cell.dwell), by_hand);
+    return fmt::format("time:        {} min with {}{} s for each sample{}{}\n",
+                       minutes(planning.plan.duration), settle, format_short(cell.dwell),
+                       by_hand.empty() ? "" : ", ", by_hand);
 }
 
 std::string describe_drop_outs(const Planning& planning) {
@@ -235,7 +240,7 @@ std::string format(const TargetPlanning& found) {
         }
     }
     if (found.target.duration) {
-        text += fmt::format("time:        {} of {} min for {}", minutes(planning.duration),
+        text += fmt::format("time:        {} of {} min for {}", minutes(planning.plan.duration),
                             format_short(*found.target.duration / seconds_per_minute), count);
         if (!found.target.limit && next != nullptr) {
             text += fmt::format(" ({}: {})", next->pose_count, minutes(next->duration));

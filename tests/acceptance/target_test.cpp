@@ -133,7 +133,7 @@ TEST_F(Target, IsKeptByThePlanAndNotByOneOfAPoseLess) {
         before = one.error->assured;
     }
     EXPECT_GT(found.curve.size(), 4u);
-    EXPECT_GT(found.curve.back().duration, planning.duration);
+    EXPECT_GT(found.curve.back().duration, planning.plan.duration);
 }
 
 TEST_F(Target, NeedsMorePosesTheSurerAndTheTighterItIs) {
@@ -252,10 +252,10 @@ TEST_F(Target, AsManyPosesAsFitInTheTime) {
     const TargetPlanning found = find();
     const Planning& planning = found.planning.value();
     const auto poses = static_cast<double>(planning.plan.poses.size());
-    EXPECT_NEAR(planning.duration, planning.tour.time + 12 * poses, 1e-9);
-    EXPECT_LE(planning.duration, 120);
+    EXPECT_NEAR(planning.plan.duration, planning.tour.time + 12 * poses, 1e-9);
+    EXPECT_LE(planning.plan.duration, 120);
     options_.pose_count = planning.search.pose_count + 1;
-    EXPECT_GT(make_plan(campaign_, options_).duration, 120);
+    EXPECT_GT(make_plan(campaign_, options_).plan.duration, 120);
     // Beside a limit.
     target_.limit = 1e-3;
     EXPECT_EQ(find().ending, TargetEnding::Reached);

@@ -95,6 +95,26 @@ TEST_F(ProgramCommand, WritesThePlanAsItIsSent) {
     EXPECT_NE(run_well("program s.json --for csv -o s.csv").find("as sent"), std::string::npos);
 }
 
+TEST_F(ProgramCommand, SaysWhatIsDoneByHand) {
+    EXPECT_EQ(run_well("program p.json --campaign cell.yaml --for fanuc -o a.ls").find("by hand"),
+              std::string::npos);
+    std::string text = text_of("cell.yaml");
+    const std::string cell = "\ncell:\n";
+    text.insert(text.find(cell) + cell.size(),
+                "  target_change_s: 600\n  stations: 2\n  station_change_s: 900\n");
+    write_text("hand.yaml", text);
+    run_well("plan hand.yaml -k 10 --pool 600 --starts 1 --workspace-poses 30 -o hand.json");
+    const auto plan = nlohmann::json::parse(text_of("hand.json"));
+    EXPECT_EQ(plan.at("target_runs"), 3);
+    EXPECT_GT(plan.at("duration_s"), 2 * (2 * 600 + 3 * plan.at("visiting_time_s").get<double>()));
+    const std::string words = "3 runs, the reflector moved between them, all at each of 2 stations";
+    EXPECT_NE(run_well("program hand.json --for fanuc -o b.ls").find("by hand: " + words + '\n'),
+              std::string::npos);
+    EXPECT_EQ(nlohmann::json::parse(run_well("program hand.json --for fanuc -o b.ls --json"))
+                  .at("by_hand"),
+              words);
+}
+
 TEST_F(ProgramCommand, WaitsAsItIsTold) {
     const auto program = [&](const std::string& options) {
         run_well("program p.json --for fanuc -o A.ls " + options);

@@ -146,6 +146,7 @@ struct ProgramReport {
     std::string sent;                ///< the plan as it is sent, CSV
     Index stop_count = 0;            ///< moves
     Index visit_count = 0;           ///< moves to poses that are measured
+    std::string by_hand = {};        ///< what is done by hand beside it, in words; empty: nothing
     std::optional<RoundingLoss> loss = {};
     std::vector<std::string> stale = {};  ///< see stale_program_files()
 };

@@ -149,6 +149,12 @@ struct Plan {
     // For continuous plans: deviations, and how long measuring takes.
     std::vector<NamedNumber> standard_deviations;  ///< expected, for each parameter, m or rad
     double visiting_time = 0;                      ///< s, without verification poses
+    /// s: all moves and standstills, at all stations; targets that a pose does not show take none.
+    double duration = 0;
+    /// Whether the only reflector is moved by hand at each pose, since that is quicker than one run
+    /// for each target.
+    bool is_target_changed_at_poses = false;
+    Index target_runs = 1;  ///< else: runs through all poses at each station, one for each target
 
     /// Poses to judge the calibration on, never to calibrate with: random in the workspace,
     /// feasible and seen like the others, at least 5 deg (and the cell's least joint distance) from

@@ -58,14 +58,9 @@ struct Planning {
     std::optional<PredictedAccuracy> chosen;  ///< by the best choice from the pool, not moved
     InformationByNoise by_noise;              ///< for all poses
     ErrorBudget budget;
-    std::vector<DropOut> without_each;  ///< with each pose of the plan missing, in its order
-    std::vector<DropOut> drop_outs;     ///< the poses that hurt most, missing one after another
-    double duration = 0;                ///< s: all moves and standstills, at all stations
-    /// Whether the only reflector is moved by hand at each pose, since that is quicker than one run
-    /// for each target.
-    bool is_target_changed_at_poses = false;
-    Index target_runs = 1;  ///< else: runs through all poses at each station, one for each target
-    std::optional<ErrorsLeftOut> left_out;    ///< nothing: none that matter, or an estimate tells
+    std::vector<DropOut> without_each;      ///< with each pose of the plan missing, in its order
+    std::vector<DropOut> drop_outs;         ///< the poses that hurt most, missing one after another
+    std::optional<ErrorsLeftOut> left_out;  ///< nothing: none that matter, or an estimate tells
     std::optional<RobotError> robot_alone{};  ///< over the workspace, where pixels are measured
 };
 

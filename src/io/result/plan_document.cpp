@@ -158,7 +158,6 @@ Json report_to_json(const Plan& plan, const std::string& path) {
 
 /// What is known of a plan that was kept, too.
 void add_judgement(Json& document, const Planning& planning) {
-    document["duration_s"] = planning.duration;
     document["budget"] = budget_to_json(planning.budget);
     document["pose_values"] = drop_outs_to_json(planning, planning.without_each, true);
     document["drop_outs"] = drop_outs_to_json(planning, planning.drop_outs, false);

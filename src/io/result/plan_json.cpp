@@ -367,6 +367,10 @@ void plan_fields(const Fields& file, Plan& plan, const FilePath& path) {
     if (plan.is_continuous() && file.has("predicted", plan.predicted.has_value())) {
         prediction_fields(file["predicted"], plan);
         file("visiting_time_s", plan.visiting_time, Number{.least = 0, .null = infinity});
+        file.optional("duration_s", true, plan.duration, Number{.least = 0, .null = infinity});
+        file.optional("target_runs", plan.target_runs > 1, plan.target_runs, Count{1});
+        file.optional("target_changed_at_poses", plan.is_target_changed_at_poses,
+                      plan.is_target_changed_at_poses);
     }
     file.optional("cell_doubts", !plan.cell_doubts.empty(), plan.cell_doubts);
     if (has_campaign || file.has("assumes", !plan.assumptions.empty())) {

@@ -14,6 +14,7 @@ std::string to_json(const ProgramReport& report, const Campaign& campaign) {
     document["as_sent"] = report.sent;
     document["moves"] = report.stop_count;
     document["measured"] = report.visit_count;
+    if (!report.by_hand.empty()) document["by_hand"] = report.by_hand;
     document["stale"] = report.stale;
     if (report.loss) {
         const RoundingLoss& loss = *report.loss;

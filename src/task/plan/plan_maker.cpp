@@ -134,24 +134,27 @@ void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out
     planning.without_each = drop_each(prediction, blocks, planning.information);
     planning.drop_outs = drop_worst(prediction, blocks, drop_out_count, left);
     planning.robot_alone = predict_robot_alone(problem, planning.information);
-    const CampaignTime time = campaign_time(problem, planning.tour.time, std::ssize(poses));
-    planning.duration = time.total;
-    planning.is_target_changed_at_poses = time.is_target_changed_at_poses;
-    planning.target_runs = time.target_runs;
+    const CampaignTime time =
+        campaign_time(problem, planning.tour.time, seen_at(poses, campaign.sensor->target_count()));
+    planning.plan.duration = time.total;
+    planning.plan.is_target_changed_at_poses = time.is_target_changed_at_poses;
+    planning.plan.target_runs = time.target_runs;
 }
 
-CampaignTime campaign_time(const PlanningProblem& problem, double moves, Index poses) {
+CampaignTime campaign_time(const PlanningProblem& problem, double moves, const Seen& is_seen) {
     const Cell& cell = problem.campaign.cell;
-    const auto count = static_cast<double>(poses);
+    const auto count = static_cast<double>(is_seen.rows());
     const double samples = cell.dwell * problem.request.repeats;
     CampaignTime time;
     time.total = moves + count * (cell.settle + samples);
     const Sensor& sensor = *problem.campaign.sensor;
     if (cell.target_change > 0 && sensor.observes_targets() && sensor.target_count() > 1) {
         const auto targets = static_cast<double>(sensor.target_count());
-        const double changes = (targets - 1) * cell.target_change;
-        const double in_runs = targets * time.total + changes;
-        const double at_poses = moves + count * (cell.settle + targets * samples + changes);
+        const auto visible = static_cast<double>(is_seen.count());
+        const double in_runs = targets * moves + visible * (cell.settle + samples) +
+                               (targets - 1) * cell.target_change;
+        const double at_poses = moves + count * cell.settle + visible * samples +
+                                (visible - count) * cell.target_change;
         time.is_target_changed_at_poses = at_poses < in_runs;
         if (!time.is_target_changed_at_poses) time.target_runs = sensor.target_count();
         time.total = std::min(in_runs, at_poses);

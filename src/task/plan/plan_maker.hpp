@@ -14,11 +14,11 @@ void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out
 
 struct CampaignTime {
     double total = 0;                         ///< s: moves, standstills and what is done by hand
-    bool is_target_changed_at_poses = false;  ///< see Planning
+    bool is_target_changed_at_poses = false;  ///< see Plan
     Index target_runs = 1;                    ///< likewise
 };
-/// `moves`: of one run through all poses, s.
-CampaignTime campaign_time(const PlanningProblem& problem, double moves, Index poses);
+/// `moves`: of one run through all poses, s. `is_seen`: poses x targets, at least one of each pose.
+CampaignTime campaign_time(const PlanningProblem& problem, double moves, const Seen& is_seen);
 
 /// Plan::value_rms of that value.
 std::optional<double> value_rms_of(const PlanningProblem& problem, double value);

@@ -168,7 +168,8 @@ class Search {
                                  choices_.by_noise(*chosen));
         const double moves = detail::straight_tour_time(
             problem_.constraints, maker_.pool().configurations(*chosen, Eigen::all));
-        prediction.duration = detail::campaign_time(problem_, moves, count).total;
+        const Seen is_seen = maker_.pool().is_seen(*chosen, Eigen::all);
+        prediction.duration = detail::campaign_time(problem_, moves, is_seen).total;
         return prediction;
     }
 
@@ -192,7 +193,7 @@ class Search {
         const auto planned = judge(quick);
         if (options_.stop.is_set() || !planned || !chosen.error) return by_choices;
         const double gain = planned->assured / chosen.error->assured;
-        const double time = quick.duration / chosen.duration;
+        const double time = quick.plan.duration / chosen.duration;
         const Index found = least_count(count, least_, most_chosen(), [&](Index n) {
             CountPrediction at = choose(n);
             if (at.error) at.error->assured *= gain;
@@ -212,11 +213,11 @@ class Search {
         const bool is_cut = options_.stop.is_set();
         if (!is_cut && !made.plan.is_stopped_early()) finished_.insert(count);
         if (is_cut && !is_kept(made)) return;
-        planned_[count] = {count, true, result_.error, made.duration};
+        planned_[count] = {count, true, result_.error, made.plan.duration};
     }
     /// Of the plan that result_.error is of.
     bool is_kept(const Planning& planning) const {
-        return has_crossed(result_.error, planning.duration) == has_limit();
+        return has_crossed(result_.error, planning.plan.duration) == has_limit();
     }
 
     /// Full plans on both sides of where it is crossed; the one that keeps what was asked for
@@ -257,12 +258,12 @@ class Search {
             throw InputError(fmt::format(
                 "{:g} min are too short: {}, the least number of poses, take {:.10g} min",
                 *target_.duration / 60, least_,
-                std::ceil(result_.planning->duration / 60 * 100) / 100));
+                std::ceil(result_.planning->plan.duration / 60 * 100) / 100));
         }
         result_.ending = TargetEnding::Reached;
         if (!is_one_kept) result_.ending = TargetEnding::TooManyPoses;
         if (has_limit() && is_one_kept && target_.duration &&
-            result_.planning->duration > *target_.duration) {
+            result_.planning->plan.duration > *target_.duration) {
             if (!result_.is_settled) check_stop();
             result_.ending = TargetEnding::TooLong;
             const Index most = std::min(most_, choices_.candidate_count());
