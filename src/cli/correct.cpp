@@ -232,6 +232,26 @@ std::vector<CartesianTarget> targets_of(const ProgramToCorrect& read,
     return targets;
 }
 
+/// The model's joints at a target; one that its digits have rounded beyond a limit is at it.
+VectorXd joints_of(const io::JointTarget& target, const io::CampaignFile& file) {
+    constexpr double most = 1e-4;  // rad or m; more is no matter of digits
+    VectorXd joints = file.controller.to_model(target.joints);
+    VectorXd rounding = VectorXd::Zero(joints.size());
+    for (Index i = 0; i < target.joints.size(); ++i) {
+        VectorXd moved = target.joints;
+        moved[i] += target.rounding[i];
+        rounding += (file.controller.to_model(moved) - joints).cwiseAbs();
+    }
+    for (Index j = 0; j < joints.size(); ++j) {
+        const Joint& joint = file.robot.joint(j);
+        const double nearest = std::clamp(joints[j], joint.lower, joint.upper);
+        constexpr double noise = 1e-12;  // of the way to the model's joints
+        const double allowed = std::min(rounding[j], most) + noise;
+        if (std::abs(joints[j] - nearest) <= allowed) joints[j] = nearest;
+    }
+    return joints;
+}
+
 /// The targets in joint values, in the model's joints.
 io::Configurations configurations_of(const io::TargetProgram& program,
                                      const io::CampaignFile& file) {
@@ -239,8 +259,7 @@ io::Configurations configurations_of(const io::TargetProgram& program,
     poses.joints.resize(std::ssize(program.targets), file.robot.joint_count());
     for (std::size_t k = 0; k < program.targets.size(); ++k) {
         poses.ids.push_back(program.targets[k].id);
-        poses.joints.row(static_cast<Index>(k)) =
-            file.controller.to_model(program.targets[k].joints).transpose();
+        poses.joints.row(static_cast<Index>(k)) = joints_of(program.targets[k], file).transpose();
     }
     return poses;
 }

@@ -184,6 +184,23 @@ TEST_F(Correct, RoundsInwardsAtALimit) {
     run_well("correct " + fanuc_design + " e.json --poses corrected.script --for ur");
 }
 
+/// 60 deg are 1.0471976 rad: what was rounded beyond that is at the limit, more is refused.
+TEST_F(Correct, TakesATargetThatItsDigitsRoundBeyondALimit) {
+    const auto corrected = [&](const std::string& q2) {
+        write_text("rounded.script", "movej([0.1, " + q2 + ", 0.3, 0.4, 0.5, 0.6])\n");
+        run_well(correct_ + "rounded.script --for ur -o corrected.script");
+        return text_of("corrected.script");
+    };
+    for (const char* const rounded : {"1.0472", "1.04720"}) {
+        EXPECT_NE(corrected(rounded).find(", 1.047197, "), std::string::npos) << rounded;
+    }
+    for (const char* const beyond : {"1.0473", "1.047210", "1.05", "2"}) {
+        write_text("beyond.script", fmt::format("movej([0.1, {}, 0.3, 0.4, 0.5, 0.6])\n", beyond));
+        expect_input_error(correct_ + "beyond.script --for ur -o c.script",
+                           "beyond.script: configuration '1:8' is beyond the joint limits: q2 is ");
+    }
+}
+
 TEST_F(Correct, TakesPlacesOfATool) {
     write_text("p.csv",
                "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n"

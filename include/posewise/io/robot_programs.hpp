@@ -170,7 +170,8 @@ struct JointTarget {
     std::string id;                ///< "P[3]" of FANUC, else line and column: "12:14"
     VectorXd joints;               ///< values of the controller's joints, rad
     std::vector<TextSpan> values;  ///< where each stands in the program
-    VectorXd steps = {};           ///< of the last digit in which each is written, rad or m
+    VectorXd steps = {};           ///< of the last digit in which each is to be written, rad or m
+    VectorXd rounding = {};  ///< half of the last digit that each has, rad or m; 0: it has none
 };
 
 /// A position that is stated by coordinates of a tool in a frame.

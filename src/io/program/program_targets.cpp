@@ -82,7 +82,8 @@ class TargetReader {
     void leave(std::size_t at) { program_.others.push_back(place(at).line); }
 
     void add(const std::vector<TextSpan>& spans, const std::string& id = "") {
-        JointTarget target{id, VectorXd(joints_.count()), spans, VectorXd(joints_.count())};
+        const VectorXd none = VectorXd::Zero(joints_.count());
+        JointTarget target{id, none, spans, none, none};
         const FileLocation where = place(spans.front().begin);
         if (id.empty()) target.id = fmt::format("{}:{}", where.line, where.column);
         for (Index i = 0; i < joints_.count(); ++i) {
@@ -93,6 +94,9 @@ class TargetReader {
             target.joints[i] = unit.to_si(value);
             target.steps[i] =
                 unit.to_si(std::pow(10.0, -detail::decimals_of(text, rules_.decimals)));
+            if (const int decimals = detail::decimals_of(text, 0); decimals > 0) {
+                target.rounding[i] = unit.to_si(0.5 * std::pow(10.0, -decimals));
+            }
             if (detail::is_plausible(target.joints[i], detail::quantity_of(joints_.motion(i)))) {
                 continue;
             }
