@@ -26,6 +26,7 @@ constexpr auto flags = std::to_array<std::pair<std::string_view, std::string_vie
      {"pool_count", "--pool"},
      {"pose_count", "--poses"},
      {"spread.is_prior", "--prior"},
+     {"splits", "--splits"},
      {"starts", "--starts"},
      {"time", "--time"},
      {"workspace_box_mm", "--workspace-box-mm"}});

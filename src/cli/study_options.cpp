@@ -108,9 +108,8 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
         ->check(whole_number(0, 1000));
     command
         .add_option("--holdout", arguments.options.holdout,
-                    "Part of the configurations that a split judges on")
-        ->check(real_number(0.01, 0.99))
-        ->capture_default_str();
+                    "Part of the configurations that a split judges on (default: 0.3)")
+        ->check(real_number(0.01, 0.99));
     command.add_option_function<std::string>(
         "-k,--poses",
         [&arguments](const std::string& text) {

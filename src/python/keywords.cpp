@@ -212,7 +212,9 @@ StudyCall study_call(const Keywords& keywords) {
     read_prior(stated, call.prior);
     stated("force", call.is_forced);
     if (stated.has("splits")) stated("splits", options.splits.emplace(), Count{0, most_poses});
-    stated("holdout", options.holdout, Number{.above = 0, .most = 0.9});
+    if (stated.has("holdout")) {
+        stated("holdout", options.holdout.emplace(), Number{.above = 0, .most = 0.9});
+    }
     stated("trials", options.trials, Count{1, 100000000});
     stated("precision", options.precision, Number{.least = 0, .most = 1});
     stated("pool", options.pool_count, Count{1, most_drawn});

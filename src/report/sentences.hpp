@@ -9,6 +9,7 @@
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/judgement.hpp"
 #include "posewise/task/plan.hpp"
+#include "posewise/task/study.hpp"
 
 /// Sentences about a campaign and about results, as reports and messages use them.
 namespace posewise::detail {
@@ -36,6 +37,9 @@ std::string describe(const Cure& cure, const Campaign& campaign);
 /// words that it shall begin with.
 std::string describe_images(const std::string& begin, const std::vector<ImageCoverage>& images,
                             const Sensor& sensor);
+
+/// Says so if a study judges on fewer than least_judged poses somewhere; else empty.
+std::string describe_least_judged(const Study& study);
 
 /// Whether the model error was worth looking for: there are errors of the robot to identify.
 bool is_model_error_found(const Calibration& calibration);

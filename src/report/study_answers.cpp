@@ -69,17 +69,20 @@ std::string sum_up(const Study& study, const Curve& curve) {
     if (expected) text += fmt::format(", {} expected", format_error(*expected, false));
     if (random) text += fmt::format(", random ones {}", format_error(*random, false));
     return text +
-           (k + 1 == curve.points.size() ? "; more were not tried" : "; more gain less than 10 %") +
+           (k + 1 == curve.points.size() ? "; more were not tried"
+                                         : "; the fewest within 10 % of the best") +
            describe_ends(curve.points);
 }
 
 std::string describe_sureness(const Study& study, const Curve& curve) {
+    const std::string few_judged = detail::describe_least_judged(study);
+    const std::string warning = few_judged.empty() ? "" : "; " + few_judged;
     const StudyRow& row = *curve.rows[enough(curve.points)];
     if (study.splits == 0) {
         constexpr Index few = 10;
         const Index left = static_cast<Index>(study.ids.size()) - row.pose_count;
         return std::string("every subset was judged on the poses it leaves") +
-               (left < few ? fmt::format(", here {}", left) : "");
+               (left < few ? fmt::format(", here {}", left) : "") + warning;
     }
     const std::string splits =
         count_of(split_count(row, study.criteria.size()), study.is_simulated ? "robot" : "split");
@@ -93,7 +96,7 @@ std::string describe_sureness(const Study& study, const Curve& curve) {
                             count_of(advantage->left_out, study.is_simulated ? "robot" : "split"));
         }
     }
-    return text;
+    return text + warning;
 }
 
 std::string describe_limit(const Curve& curve) {

@@ -171,24 +171,27 @@ std::string describe_early_end(const Study& study) {
         study.rows.back().pose_count);
 }
 
-std::string describe_few_judged(const Study& study) {
-    constexpr Index few = 4;
+std::string detail::describe_least_judged(const Study& study) {
     if (study.is_simulated || study.rows.empty()) return "";
     const Index most = study.rows.back().pose_count;
     const Index judged =
         study.splits > 0 ? study.test_count : static_cast<Index>(study.ids.size()) - most;
-    if (judged <= 0 || judged >= few) return "";  // none: no error is stated either
-    const std::string count = detail::count_of(judged, "pose");
+    if (judged <= 0 || judged >= least_judged) return "";  // none: no error is stated either
+    const std::string count = count_of(judged, "pose");
     return study.splits > 0
-               ? fmt::format(
-                     "each split judges on {} only, which says little of others; `holdout` "
-                     "must be larger, or more poses measured",
-                     count)
+               ? fmt::format("each split judges on {} only, which says little of others", count)
                : fmt::format(
                      "the accuracy with {} is judged on {} only, what they leave, which says "
-                     "little of others; the largest `pose_count` must be smaller, or more poses "
-                     "measured",
-                     detail::count_of(most, "pose"), count);
+                     "little of others",
+                     count_of(most, "pose"), count);
+}
+
+std::string describe_few_judged(const Study& study) {
+    const std::string words = detail::describe_least_judged(study);
+    if (words.empty()) return "";
+    return fmt::format("{}; {} must be {}, or more poses measured", words,
+                       study.splits > 0 ? "`holdout`" : "the largest `pose_count`",
+                       study.splits > 0 ? "larger" : "smaller");
 }
 
 void write_study_csv(const Study& study, const WriteText& write) {

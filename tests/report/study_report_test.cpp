@@ -153,8 +153,14 @@ TEST(DescribeFewJudged, SaysHowFewPosesTheAccuracyRestsOn) {
     EXPECT_EQ(describe_few_judged(study),
               "each split judges on 3 poses only, which says little of others; `holdout` must be "
               "larger, or more poses measured");
+    const auto sureness = [&] { return answer({study}).at(1).text; };
+    EXPECT_TRUE(
+        sureness().ends_with("; each split judges on 3 poses only, which says little of "
+                             "others"))
+        << sureness();
     study.test_count = 4;
     EXPECT_EQ(describe_few_judged(study), "");
+    EXPECT_EQ(sureness().find("little"), std::string::npos);
     EXPECT_EQ(answer({study})[1].text.find("every subset"), std::string::npos);
     study.splits = 0;
     EXPECT_EQ(answer({study})[1].text, "every subset was judged on the poses it leaves, here 4");

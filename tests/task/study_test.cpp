@@ -12,6 +12,7 @@
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/selection/choice.hpp"
 #include "support/campaigns.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace posewise {
 namespace {
@@ -288,6 +289,20 @@ TEST(StudyPoseCounts, PlansOnlyWhatKeepsTheLeastDistance) {
     }
     options.least_distance = 100;  // no two are that far apart
     EXPECT_THROW(study(example.campaign, example.measurements, options), InputError);
+}
+
+TEST(Study, RefusesAHoldoutWithoutSplits) {
+    const Example example(12);
+    StudyOptions options = small_options();
+    options.pose_counts = {8};
+    options.holdout = 0.5;
+    options.splits.reset();  // none, since 8 is over a third
+    EXPECT_NE(testing::input_error_of([&] {
+                  study(example.campaign, example.measurements, options);
+              }).find("`holdout` is of splits, and none are made"),
+              std::string::npos);
+    options.holdout.reset();
+    EXPECT_EQ(study(example.campaign, example.measurements, options).splits, 0);
 }
 
 TEST(CompareModels, GivesEachTheSameSplitsCountsAndRandomSubsets) {

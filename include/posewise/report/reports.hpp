@@ -120,7 +120,7 @@ std::string format(const std::vector<Study>& studies);
 /// That a study was stopped before all was finished, in words; empty if it was not. Throws
 /// InputError if nothing was finished by then.
 std::string describe_early_end(const Study& study);
-/// What to warn of if it judges on fewer than 4 configurations; else empty.
+/// What to warn of if it judges on fewer than least_judged configurations; else empty.
 std::string describe_few_judged(const Study& study);
 
 /// Receives a part of a text.

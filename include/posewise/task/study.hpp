@@ -161,6 +161,9 @@ struct StudyRow {
 /// Number of finished splits, in a study of `criterion_count` criteria; 1 if nothing is held out.
 Index split_count(const StudyRow& row, std::size_t criterion_count);
 
+/// Fewer poses to judge on say little of others.
+constexpr Index least_judged = 4;
+
 struct StudyOptions {
     /// By which poses are chosen; nothing: the campaign's. An empty list: random subsets only.
     std::optional<std::vector<Criterion>> criteria{};
@@ -174,7 +177,8 @@ struct StudyOptions {
     /// informative configurations is judged on easier ones. Nothing: 10 if a split leaves three
     /// times the largest pose count to choose from, else 0.
     std::optional<Index> splits{};
-    double holdout = 0.3;       ///< share of the configurations that a split judges on
+    /// Share of the configurations that a split judges on; nothing: 0.3.
+    std::optional<double> holdout{};
     double least_distance = 0;  ///< rad, between any two in a planned subset, see PlanRequest
     Index starts = 0;           ///< 0: 4, or 1 where a split has over 200 candidates
     std::optional<std::uint64_t> seed{};  ///< for all draws; nothing: the campaign's

@@ -45,6 +45,8 @@ std::string describe_undetermined(const Campaign& campaign, const Measurements& 
     return detail::judge_measured(campaign, measurements, options.judge, options.stop);
 }
 
+double holdout_of(const StudyOptions& options) { return options.holdout.value_or(0.3); }
+
 void check_options(const StudyOptions& options) {
     if (options.random_subsets < 0 || options.starts < 0) {
         throw InputError("random subsets and starts must not be negative, are " +
@@ -54,9 +56,8 @@ void check_options(const StudyOptions& options) {
     if (options.splits && *options.splits < 0) {
         throw InputError("splits are " + std::to_string(*options.splits) + ", must be at least 0");
     }
-    if (!(options.holdout > 0 && options.holdout < 1)) {
-        throw InputError(
-            fmt::format("holdout is {:g}, must be above 0 and below 1", options.holdout));
+    if (const double holdout = holdout_of(options); !(holdout > 0 && holdout < 1)) {
+        throw InputError(fmt::format("holdout is {:g}, must be above 0 and below 1", holdout));
     }
 }
 
@@ -74,7 +75,7 @@ std::vector<Index> split_counts(Index pool, Index least) {
 /// the largest subsets would be judged on one, two or three, which say little of others.
 Index largest_count(Index all, Index least) {
     constexpr Index many = 50;
-    const Index most = all < many ? all - std::max<Index>(4, all / 5) : all - 1;
+    const Index most = all < many ? all - std::max<Index>(least_judged, all / 5) : all - 1;
     return most < least ? all - 1 : most;
 }
 
@@ -111,7 +112,7 @@ void check_some_are_left(const std::vector<Index>& counts, Index all) {
 Index usual_splits(Index all, Index least, const StudyOptions& options) {
     constexpr Index splits = 10;
     if (all < 2) return 0;
-    const Index pool = all - test_count(all, options.holdout);
+    const Index pool = all - test_count(all, holdout_of(options));
     if (options.pose_counts.empty()) {
         return split_counts(pool, least).empty() ? 0 : splits;
     }
@@ -125,7 +126,7 @@ std::vector<Split> make_splits(Index all, Index count, const StudyOptions& optio
         Split split;
         // Streams of cases begin at 2^32.
         split.test = RandomStream(options.seed.value(), static_cast<std::uint64_t>(s))
-                         .subset(all, test_count(all, options.holdout));
+                         .subset(all, test_count(all, holdout_of(options)));
         split.pool = all_but(all, split.test);
         splits.push_back(std::move(split));
     }
@@ -182,8 +183,8 @@ std::string checksum_of(const Setting& setting) {
     checksum.add(setting.measurements.configurations);
     checksum.add(setting.measurements.observations);
     for (const Split& split : setting.splits) checksum.add(split.blocks.matrix);
-    checksum.add(fmt::format("{} {} {} {}", options.holdout, options.least_distance, options.starts,
-                             setting.campaign.spread.is_prior));
+    checksum.add(fmt::format("{} {} {} {}", holdout_of(options), options.least_distance,
+                             options.starts, setting.campaign.spread.is_prior));
     return checksum.text();
 }
 
@@ -213,6 +214,12 @@ Prepared prepare(Index least, const RobotModel& model, const Measurements& measu
     check_options(options);
     const Index all = measurements.configuration_count();
     const Index split_count = options.splits.value_or(usual_splits(all, least, options));
+    if (split_count == 0 && options.holdout) {
+        throw InputError(
+            "`holdout` is of splits, and none are made unless `splits` asks for them, since no "
+            "pose "
+            "count is up to a third of the configurations to choose from; must be left out");
+    }
     if (split_count > 0 && all < 2) {
         throw InputError("there is 1 configuration, splits need at least 2");
     }
