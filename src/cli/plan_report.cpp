@@ -20,8 +20,8 @@ std::string describe(const MadePlan& plan, const std::vector<CountAccuracy>& cou
     const Planning& planning = *plan.made.planning;
     const bool has_target = plan.made.ending != TargetEnding::NotRun;
     std::string text = (has_target ? format(plan.made) : "") +
-                       describe_verified(plan.made.target, plan.simulated) +
-                       format_planning(planning) + format_budget(planning);
+                       describe_verified(plan.made, plan.simulated) + format_planning(planning) +
+                       format_budget(planning);
     text += has_target ? format_curve(plan.made)
             : planning.plan.is_stopped_early()
                 ? "\nPredicted position error by number of poses: left out, planning was stopped\n"

@@ -15,7 +15,7 @@ namespace {
 /// What the poses of a judgement are called, and what it means if they are worse than expected.
 struct Kind {
     const char* name;
-    const char* cause;
+    std::string cause;
 };
 
 /// "12 new poses", "3 poses beyond the joint ranges calibrated with (q2, q3)".
@@ -85,7 +85,7 @@ std::string describe_verdict(const Calibration& calibration, const Kind& kind, b
                      : group.group == PoseGroup::Beyond
                          ? "what is expected there is extrapolated; calibrate with poses like "
                            "those, too"
-                         : kind.cause);
+                         : kind.cause.c_str());
 }
 
 std::string describe(const Calibration& calibration, const Kind& kind,
@@ -107,13 +107,14 @@ std::string describe(const Calibration& calibration, const Kind& kind,
 }  // namespace
 
 std::string describe_judgements(const Calibration& calibration) {
-    constexpr const char* unlike = "the robot's errors there are unlike those calibrated with";
+    const std::string unlike = fmt::format(
+        "the robot's errors there are unlike those calibrated with, or the model error "
+        "is larger than {}",
+        is_model_error_found(calibration) ? "the one found" : "the one stated");
+    const std::string changed = "the robot has changed, or " + unlike;
     return describe(calibration, {"verification", unlike}, calibration.verification) +
            describe(calibration, {"not in plan", unlike}, calibration.left_out) +
-           describe(calibration,
-                    {"validation",
-                     "the robot has changed, or its errors there are unlike those calibrated with"},
-                    calibration.validation);
+           describe(calibration, {"validation", changed}, calibration.validation);
 }
 
 }  // namespace posewise::detail

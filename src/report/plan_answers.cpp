@@ -48,12 +48,13 @@ std::string judge(const TargetPlanning& found, const std::optional<SimulatedPlan
     LimitVerdict verdict =
         found.error->assured <= *target.limit ? LimitVerdict::Kept : LimitVerdict::NotKept;
     if (is_simulated) verdict = judge_limit(*simulated, *target.limit);
-    return fmt::format("; limit {} with {} %{}: {}", format_error(*target.limit, false),
+    return fmt::format("; limit {} with {} %{}: {}{}", format_error(*target.limit, false),
                        format_short(100 * target.assurance),
                        is_simulated ? ", checked by simulation" : "",
                        verdict == LimitVerdict::Kept      ? "kept"
                        : verdict == LimitVerdict::NotKept ? "not kept"
-                                                          : "too close to say");
+                                                          : "too close to say",
+                       verdict == LimitVerdict::Kept ? detail::condition_of_limit(found) : "");
 }
 
 std::string explain_proof(const Plan& plan) {

@@ -80,8 +80,9 @@ std::string format(const SimulatedPlan& simulated) {
     return text;
 }
 
-std::string describe_verified(const TargetOptions& target,
+std::string describe_verified(const TargetPlanning& found_plan,
                               const std::optional<SimulatedPlan>& simulated) {
+    const TargetOptions& target = found_plan.target;
     if (!simulated || !target.limit || simulated->robot_count == 0) return "";
     const SimulatedNumber& assured = simulated->assured;
     const double limit = mm_per_m * *target.limit;
@@ -95,7 +96,8 @@ std::string describe_verified(const TargetOptions& target,
                           robots);
     switch (judge_limit(*simulated, *target.limit)) {
         case LimitVerdict::Kept:
-            return fmt::format("verified:    the limit is kept: {}\n", found);
+            return fmt::format("verified:    the limit is kept{}: {}\n",
+                               detail::condition_of_limit(found_plan), found);
         case LimitVerdict::Open:
             return fmt::format(
                 "verified:    too close to {} mm to say: {}; more digits tell (--verify-digits), "

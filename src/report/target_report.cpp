@@ -159,6 +159,11 @@ const char* name_of(ErrorQuantity quantity) {
     return quantity == ErrorQuantity::Max ? "maximum" : "95 % of positions";
 }
 
+std::string condition_of_limit(const TargetPlanning& found) {
+    const bool matters = found.planning && found.planning->left_out;
+    return matters ? ", if the robot has no errors but those that are fitted" : "";
+}
+
 std::string describe_by_hand(const Plan& plan, const Cell& cell) {
     std::string text;
     if (plan.is_target_changed_at_poses) text = "the reflector moved to each target at each pose";
@@ -245,7 +250,7 @@ std::string format(const TargetPlanning& found) {
         if (!found.target.limit && next != nullptr) {
             text += fmt::format(" ({}: {})", next->pose_count, minutes(next->duration));
         }
-        if (found.target.limit) text += ": both are kept";
+        if (found.target.limit) text += ": both are kept" + detail::condition_of_limit(found);
         if (!found.target.limit && !found.is_settled) text += "; stopped early: more may fit";
         text += '\n';
     }

@@ -48,26 +48,35 @@ TEST(SimulatedPlanReport, HasTheDigitsThatAreSure) {
 
 TEST(SimulatedPlanReport, SaysWhetherALimitIsKept) {
     const SimulatedPlan simulated = found_by_simulation();
-    TargetOptions target;
+    TargetPlanning found;
+    TargetOptions& target = found.target;
     target.assurance = 0.9;
-    EXPECT_EQ(describe_verified(target, simulated), "");
+    EXPECT_EQ(describe_verified(found, simulated), "");
     target.limit = 4.1e-4;
-    EXPECT_EQ(describe_verified(target, std::nullopt), "");
-    EXPECT_EQ(describe_verified(target, simulated),
+    EXPECT_EQ(describe_verified(found, std::nullopt), "");
+    EXPECT_EQ(describe_verified(found, simulated),
               "verified:    THE LIMIT OF 0.41 mm IS NOT KEPT: 0.44 mm (sure to 0.02) with 90 %, of "
               "1000 robots and 250 of expected sizes; plan with --target-mm 0.373\n");
     SimulatedPlan failed = simulated;
     failed.uncalibrated_count = 130;
     failed.assured.found = failed.assured.uncertainty = std::numeric_limits<double>::infinity();
     EXPECT_EQ(
-        describe_verified(target, failed),
+        describe_verified(found, failed),
         "verified:    THE LIMIT OF 0.41 mm IS NOT KEPT: 130 of 1000 robots and 250 of expected "
         "sizes could not be calibrated; plan more poses\n");
     target.limit = 4.5e-4;
-    EXPECT_EQ(describe_verified(target, simulated).rfind("verified:    too close to 0.45 mm", 0),
+    EXPECT_EQ(describe_verified(found, simulated).rfind("verified:    too close to 0.45 mm", 0),
               0u);
     target.limit = 5e-4;
-    EXPECT_EQ(describe_verified(target, simulated).rfind("verified:    the limit is kept", 0), 0u);
+    EXPECT_EQ(describe_verified(found, simulated).rfind("verified:    the limit is kept: ", 0), 0u);
+    // Simulated robots have the errors that are fitted, and no others.
+    found.planning.emplace().left_out.emplace();
+    EXPECT_EQ(
+        describe_verified(found, simulated)
+            .rfind("verified:    the limit is kept, if the robot has no errors but those that "
+                   "are fitted: ",
+                   0),
+        0u);
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ std::string describe_shortfall(const TargetPlanning& found);
 /// Predictions next to what was found on simulated robots, and how certain that is.
 std::string format(const SimulatedPlan& simulated);
 /// Whether that keeps the target's limit, in one line; empty without limit or simulation.
-std::string describe_verified(const TargetOptions& target,
+std::string describe_verified(const TargetPlanning& found,
                               const std::optional<SimulatedPlan>& simulated);
 
 /// Predicted accuracy for other numbers of poses.
