@@ -193,6 +193,33 @@ TEST(ProgramTargets, OfUniversalRobotsAreWhatMovesTake) {
     EXPECT_NE(text.find("movel([0.1234568, -1.2, 0.3, 0, 0, 0], a"), std::string::npos) << text;
 }
 
+/// Joint values that a program takes from elsewhere: corrected where they stand, or named.
+TEST(ProgramTargets, ThatOthersAreMadeOfAreNamed) {
+    const Written aliases(ProgramFormat::Ur,
+                          "def weld():\n  global q1 = [0, 1, 0.1, 0, 0, 0]\n  q2 = q1\n  q3 = q2\n"
+                          "  movej(q3)\n  q4 = [1, 1, 1, 0, 0, 0]\n  q4[2] = 0.5\n  movej(q4)\n"
+                          "  q5 = get_inverse_kin(place)\n  if q5 == q4:\n    movej(q5)\n  end\n"
+                          "  q6 = [2, 2, 2, 2, 2, 2]\nend\n");
+    EXPECT_EQ(ids_of(aliases.read()), (std::vector<std::string>{"2:16", "6:9"}));
+    EXPECT_EQ(aliases.read().others, (std::vector<long>{7, 9}));
+    const std::string external = "[9E9,9E9,9E9,9E9,9E9,9E9]";
+    const Written records(
+        ProgramFormat::Abb,
+        "MODULE weld\n  VAR jointtarget a:=[[1,2,3,4,5,6]," + external +
+            "];\n  CONST robjoint r:=[1,2,3,4,5,6];\n  PROC main()\n    a.robax:=r;\n"
+            "    IF n=1 a.robax.rax_1:=10;\n    a:=CalcJointT(p,tool0);\n"
+            "    IF a.robax.rax_1>5 MoveAbsJ a,v100,fine,tool0;\n    a.extax:=e;\n"
+            "    n:=a.robax.rax_2;\n  ENDPROC\nENDMODULE\n");
+    EXPECT_EQ(ids_of(records.read()), (std::vector<std::string>{"2:24"}));
+    EXPECT_EQ(records.read().others, (std::vector<long>{3, 5, 6, 7}));
+    const Written components(ProgramFormat::Kuka,
+                             "DEF weld()\nDECL E6AXIS XP={A1 1,A2 2,A3 3,A4 4,A5 5,A6 6}\n"
+                             "XP.A1 = 10\nXP.A2=XP.A2-5\nIF XP.A1 == 10 THEN\nPTP XP\nENDIF\n"
+                             "$BASE.X = 5\nW=XP.A3\nEND\n");
+    EXPECT_EQ(ids_of(components.read()), (std::vector<std::string>{"2:20"}));
+    EXPECT_EQ(components.read().others, (std::vector<long>{3, 4}));
+}
+
 TEST(ProgramTargets, AreRefusedWhereTheyCannotBeUsed) {
     EXPECT_NE(Written(ProgramFormat::Ur, "def a():\nend\n").error().find("no target in joint"),
               std::string::npos);

@@ -45,6 +45,7 @@ class TargetReader {
     void read_kuka();
     void read_abb();
     void read_ur();
+    void read_ur_values(const std::string& text, std::set<std::string>& names);
 
     /// What tells which tools and frames its targets are of: without comments and strings.
     std::string code() const {
@@ -142,6 +143,8 @@ class TargetReader {
         });
     }
 
+    void leave_statements(const std::string& text, const char* ends,
+                          const std::function<bool(const std::string&)>& is_left);
     void leave_unread(const std::string& text, char end,
                       const std::function<bool(std::string_view)>& is_of_target);
     std::set<std::string> fanuc_added_positions() const;
@@ -315,6 +318,30 @@ void TargetReader::leave_unread(const std::string& text, char end,
     }
 }
 
+/// Leaves the statements that `is_left` says so of, in small letters and without blanks around.
+void TargetReader::leave_statements(const std::string& text, const char* ends,
+                                    const std::function<bool(const std::string&)>& is_left) {
+    for (std::size_t begin = 0, next = 0; begin < text.size(); begin = next + 1) {
+        next = std::min(text.find_first_of(ends, begin), text.size());
+        begin = std::min(text.find_first_not_of(" \t\r\n", begin), next);
+        const std::string statement(detail::trim(text.substr(begin, next - begin)));
+        if (is_left(lower_case(statement))) leave(begin);
+    }
+}
+
+/// Whether a value is assigned to one of these components of a variable, "x.a1 = 10", by the sign.
+bool assigns_component(const std::string& statement, const std::string& sign,
+                       std::string_view components) {
+    const std::size_t at = statement.find(sign);
+    if (at == std::string::npos || statement.compare(at, 2, "==") == 0) return false;
+    std::string_view left = detail::trim(std::string_view(statement).substr(0, at));
+    if (const std::size_t blank = left.rfind(' '); blank != left.npos)
+        left.remove_prefix(blank + 1);
+    const std::size_t dot = left.find('.');
+    if (dot == std::string_view::npos || left.starts_with('$')) return false;  // a frame of KUKA
+    return detail::is_word(detail::first_word(left.substr(dot + 1)), components);
+}
+
 // ---- KUKA ----
 
 /// The numbers of an aggregate, "{E6POS: X 1.0,...}".
@@ -384,6 +411,9 @@ void TargetReader::read_kuka() {
     for (std::size_t at = text.find('{'); at != std::string::npos; at = text.find('{', at + 1)) {
         read_kuka_aggregate(text, at);
     }
+    leave_statements(text, "\n", [](const std::string& statement) {
+        return assigns_component(statement, "=", "a1 a2 a3 a4 a5 a6 x y z a b c");
+    });
     leave_unread(text, '\n', [this](std::string_view statement) {
         const std::string line = lower_case(std::string(statement));
         const bool is_declared = line.find("axis ") != line.npos || line.find("pos ") != line.npos;
@@ -441,10 +471,57 @@ void TargetReader::read_abb() {
             leave(at);
         }
     }
+    leave_statements(text, ";\n", [](const std::string& statement) {
+        const bool is_stated = statement.find(":=") != std::string::npos;
+        return assigns_component(statement, ":=", "robax trans rot") ||
+               (is_stated && statement.find("robjoint ") != std::string::npos) ||
+               statement.find("calcjointt") != std::string::npos;
+    });
     leave_unread(text, ';', &is_abb_target);
 }
 
 // ---- Universal Robots ----
+
+/// Adds names whose lists others take, "q2 = q1". Leaves values of names that are no list.
+void TargetReader::read_ur_values(const std::string& text, std::set<std::string>& names) {
+    struct Assignment {
+        std::string name;
+        std::string value;
+        std::size_t at = 0;
+        bool is_whole = true;  ///< not one of its numbers, "q[0] = 1"
+    };
+    std::vector<Assignment> assignments;
+    for (std::size_t begin = 0, next = 0; begin < text.size(); begin = next + 1) {
+        next = std::min(text.find('\n', begin), text.size());
+        std::string_view line = detail::trim(std::string_view(text).substr(begin, next - begin));
+        for (const std::string_view scope : {"global ", "local "}) {
+            if (line.starts_with(scope)) line = detail::trim(line.substr(scope.size()));
+        }
+        const std::string_view name = detail::first_word(line);
+        const std::string_view rest = detail::trim(line.substr(name.size()));
+        const std::size_t sign = rest.find('=');
+        const bool is_whole = sign == 0;
+        if (name.empty() || sign == std::string_view::npos || rest.substr(sign, 2) == "==" ||
+            (!is_whole && !rest.starts_with('['))) {
+            continue;
+        }
+        assignments.push_back(
+            {std::string(name), std::string(detail::trim(rest.substr(sign + 1))), begin, is_whole});
+    }
+    for (bool is_new = true; is_new;) {
+        is_new = false;
+        for (const Assignment& one : assignments) {
+            const bool is_alias = one.is_whole && detail::is_identifier(one.value);
+            if (is_alias && names.contains(one.name)) is_new |= names.insert(one.value).second;
+        }
+    }
+    for (const Assignment& one : assignments) {
+        const bool is_read =
+            one.is_whole && (detail::is_identifier(one.value) || one.value.starts_with('[') ||
+                             one.value.starts_with("p["));
+        if (names.contains(one.name) && !is_read) leave(one.at);
+    }
+}
 
 void TargetReader::read_ur() {
     const std::string text = masked(content(), '#');
@@ -462,6 +539,7 @@ void TargetReader::read_ur() {
         if (word == "servoj") streamed.emplace(name);
     }
     names.erase("p");
+    read_ur_values(text, names);
     for (std::size_t at = text.find('['); at != std::string::npos; at = text.find('[', at + 1)) {
         const bool is_pose = word_before(text, at) == "p";
         std::size_t before = is_pose ? text.rfind('p', at) : at;
