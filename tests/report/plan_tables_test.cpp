@@ -2,6 +2,8 @@
 
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/report/reports.hpp"
+#include "posewise/task/planning.hpp"
+#include "support/cells.hpp"
 
 namespace posewise {
 namespace {
@@ -21,6 +23,36 @@ TEST(FormatChoice, SaysWhatTheValueMeansWhereItMeansMillimetres) {
     plan.request.criterion = Criterion::G;
     EXPECT_EQ(value_line(plan),
               "value:      0.3766 (predicted 0.0941 mm RMS at the worst pose by the parameters)");
+}
+
+TEST(AnswersOfPlans, CompareMorePosesWithWhatIsPlannedAndNotWithWorseChoices) {
+    Campaign campaign = testing::cell_campaign();
+    campaign.spread.is_prior = true;
+    PlanningOptions options;
+    options.pose_count = 4;
+    options.pool_count = 300;
+    options.starts = 1;
+    options.workspace_count = 20;
+    const Planning planning = make_plan(campaign, options);
+    const auto answer_with = [&](double of_the_plan) {
+        const PredictedAccuracy planned = planning.plan.predicted.value();
+        PredictedAccuracy chosen = planned;
+        chosen.rms *= 10;
+        PredictedAccuracy twice = planned;
+        twice.rms *= of_the_plan;
+        twice.left_over *= of_the_plan;
+        for (const Answer& one :
+             answer(planning, {{4, false, chosen}, {4, true, planned}, {8, false, twice}})) {
+            if (one.key == "more") return one.text;
+        }
+        return std::string();
+    };
+    const std::string hardly = answer_with(0.9);
+    EXPECT_TRUE(hardly.starts_with("more than 4")) << hardly;
+    EXPECT_NE(hardly.find(": 8 new poses leave 90 % of what 4 leave; "), std::string::npos)
+        << hardly;
+    const std::string well = answer_with(0.7);
+    EXPECT_TRUE(well.starts_with("about 3 new poses more")) << well;
 }
 
 TEST(FormatChoice, HasAsManyDigitsAsAsked) {

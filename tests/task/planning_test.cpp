@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "posewise/core/errors.hpp"
-#include "posewise/report/reports.hpp"
 #include "support/cells.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -168,26 +167,6 @@ TEST_F(MakePlan, PredictsHalfAndTwiceAsManyPoses) {
     EXPECT_FALSE(counts[0].accuracy);  // two poses do not identify the parameters
     ASSERT_TRUE(counts[2].accuracy && counts[3].accuracy);
     EXPECT_LT(counts[3].accuracy->rms, counts[2].accuracy->rms);
-}
-
-TEST_F(MakePlan, ComparesMorePosesWithWhatIsPlannedAndNotWithWorseChoices) {
-    const Planning planning = make_plan(campaign_, options_);
-    auto counts = predict_other_counts(planning);
-    const auto answer_with = [&](double of_the_plan) {
-        PredictedAccuracy& twice = counts[3].accuracy.value();
-        twice = counts[2].accuracy.value();
-        twice.rms *= of_the_plan;
-        twice.left_over *= of_the_plan;
-        counts[1].accuracy->rms = 10 * counts[2].accuracy->rms;
-        for (const Answer& one : answer(planning, counts)) {
-            if (one.key == "more") return one.text;
-        }
-        return std::string();
-    };
-    EXPECT_TRUE(
-        answer_with(0.9).starts_with("more than 4: 8 new poses leave 90 % of what 4 leave; "))
-        << answer_with(0.9);
-    EXPECT_TRUE(answer_with(0.7).starts_with("about 3 new poses more")) << answer_with(0.7);
 }
 
 TEST_F(MakePlan, RepairsWithoutMovingTheOthers) {
