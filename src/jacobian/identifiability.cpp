@@ -260,8 +260,7 @@ Index least_pose_count(const Campaign& stated, const StopSignal& stop) {
         stated.spread.is_prior ? with_robot(stated, without_parameters(stated.robot)) : stated;
     const Identifiability all = find_identifiable(campaign, stop);
     const auto rank = static_cast<Index>(all.kept.size());
-    const detail::ShownPoses poses =
-        detail::poses_to_judge(campaign, 2 * parameter_count(campaign));
+    const detail::ShownPoses poses = detail::poses_to_judge(campaign);
     const Index seen_at_once = poses.is_seen.rowwise().count().maxCoeff();
     const Index rows = campaign.sensor->rows_per_target() * seen_at_once;
     const VectorXd sizes = detail::sizes_of(campaign);

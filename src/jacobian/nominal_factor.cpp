@@ -32,8 +32,13 @@ VectorXd least_shares_of(const Campaign& campaign) {
     return shares;
 }
 
-ShownPoses poses_to_judge(const Campaign& campaign, Index count) {
+ShownPoses poses_to_judge(const Campaign& campaign) {
     const Parameters nominal = nominal_of(campaign);
+    const Index L = parameter_count(campaign);
+    const Sensor& sensor = *campaign.sensor;
+    const Index rows = sensor.rows_per_target() * sensor.least_in_view();
+    const Index count = std::min(
+        2 * L, std::max(2 * (L - sensor.unknown_sizes().size()), (4 * L + rows - 1) / rows));
     if (campaign.sensor->has_view()) {
         return viewed_poses(campaign, nominal, count, configuration_seed);
     }
@@ -69,7 +74,7 @@ MatrixXd stack_at_nominal(const Campaign& campaign, const ShownPoses& poses, Ind
 MatrixXd factor_at_nominal(const Campaign& campaign, const StopSignal& stop) {
     constexpr Index least_part = 1'000'000;  // numbers; less takes no time
     const Index L = parameter_count(campaign);
-    const ShownPoses poses = poses_to_judge(campaign, 2 * L);
+    const ShownPoses poses = poses_to_judge(campaign);
     const Index rows = std::max(4 * L, least_part / std::max<Index>(1, L));
     const Index at_once = std::max<Index>(1, rows / campaign.sensor->row_count());
     MatrixXd R(0, L);

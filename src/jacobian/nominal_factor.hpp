@@ -18,9 +18,10 @@ inline constexpr double least_visible = 1e-4;
 /// its geometry, not the shapes of terms or of a lens.
 VectorXd least_shares_of(const Campaign& campaign);
 
-/// So many random poses, of a camera those that show it the board. Of a probe that touches each
-/// touches one thing, where they can reach all.
-ShownPoses poses_to_judge(const Campaign& campaign, Index count);
+/// As many random poses as twice the parameters, of a camera those that show it the board. Of a
+/// probe that touches each touches one thing, where they can reach all. Fewer where each shows many
+/// targets: those that are known beforehand but for their sizes are told together.
+ShownPoses poses_to_judge(const Campaign& campaign);
 
 /// Expected errors by their kinds alone: what one of them is stated as, or how far joints' zeros
 /// are off where nobody mastered them, is no matter of rank.
@@ -30,8 +31,8 @@ VectorXd sizes_of(Campaign campaign);
 MatrixXd stack_at_nominal(const Campaign& campaign, const ShownPoses& poses, Index first,
                           Index count);
 
-/// The triangular factor of the Jacobian in expected errors over as many poses as twice the
-/// parameters, which is made in parts: all that tells how columns depend on each other, and no more
+/// The triangular factor of the Jacobian in expected errors over poses_to_judge(), which is made in
+/// parts: all that tells how columns depend on each other, and no more
 /// rows than columns. Throws InputError if it is stopped.
 MatrixXd factor_at_nominal(const Campaign& campaign, const StopSignal& stop);
 

@@ -149,16 +149,18 @@ ViewedPoses viewed_poses(const Campaign& campaign, const Parameters& parameters,
         in_view.resize(drawn.rows(), sensor.target_count());
         hidden.clear();
         VectorXd clearances(sensor.target_count());
-        for (Index i = 0; i < drawn.rows(); ++i) {
+        Index found = 0;
+        for (Index i = 0; i < drawn.rows() && found < count; ++i) {
             const Isometry3d flange =
                 world_from_flange(campaign, parameters, drawn.row(i).transpose());
             sensor.view_clearances(flange, parameters.sensor, clearances);
             in_view.row(i) = (clearances.array() >= 0).transpose();
             const double clearance = needed_clearance(clearances, sensor.least_in_view());
             hidden.emplace_back(std::max(0.0, -clearance), i);
+            if (clearance >= 0) ++found;
         }
         std::ranges::sort(hidden);
-        if (hidden[static_cast<std::size_t>(count - 1)].first == 0) break;
+        if (found == count) break;
     }
     ViewedPoses poses{{RowMatrixXd(count, drawn.cols()), Seen(count, sensor.target_count())}, 0};
     for (Index k = 0; k < count; ++k) {
