@@ -36,9 +36,9 @@ ShownPoses poses_to_judge(const Campaign& campaign) {
     const Parameters nominal = nominal_of(campaign);
     const Index L = parameter_count(campaign);
     const Sensor& sensor = *campaign.sensor;
-    const Index rows = sensor.rows_per_target() * sensor.least_in_view();
-    const Index count = std::min(
-        2 * L, std::max(2 * (L - sensor.unknown_sizes().size()), (4 * L + rows - 1) / rows));
+    // Weak columns are hardly told from none by fewer.
+    constexpr Index usual = 400;
+    const Index count = std::min(2 * L, std::max(2 * (L - sensor.unknown_sizes().size()), usual));
     if (campaign.sensor->has_view()) {
         return viewed_poses(campaign, nominal, count, configuration_seed);
     }

@@ -19,8 +19,8 @@ inline constexpr double least_visible = 1e-4;
 VectorXd least_shares_of(const Campaign& campaign);
 
 /// As many random poses as twice the parameters, of a camera those that show it the board. Of a
-/// probe that touches each touches one thing, where they can reach all. Fewer where each shows many
-/// targets: those that are known beforehand but for their sizes are told together.
+/// probe that touches each touches one thing, where they can reach all. Fewer where many parameters
+/// are errors of corners stated with sizes, which each view tells together.
 ShownPoses poses_to_judge(const Campaign& campaign);
 
 /// Expected errors by their kinds alone: what one of them is stated as, or how far joints' zeros
