@@ -1,8 +1,11 @@
 #include "linear_registration.hpp"
 
 #include <limits>
+#include <numeric>
 
 #include "core/decompositions.hpp"
+#include "core/statistics.hpp"
+#include "posewise/core/random.hpp"
 #include "posewise/model/chain.hpp"
 
 namespace posewise::detail {
@@ -73,6 +76,25 @@ Matrix3d descend(const RotationMisfit& misfit, Matrix3d X) {
     return nearest_rotation(X);
 }
 
+VectorXd misses(const RegistrationEquations& equations, const RegistrationSolution& at) {
+    VectorXd x(equations.A.cols());
+    x << rows_of(at.X), at.c, at.t;
+    return equations.A * x - equations.b;
+}
+
+RegistrationEquations part(const RegistrationEquations& equations, const std::vector<Index>& views,
+                           Index of_each) {
+    RegistrationEquations some{MatrixXd(of_each * std::ssize(views), equations.A.cols()),
+                               VectorXd(of_each * std::ssize(views))};
+    Index row = 0;
+    for (const Index i : views) {
+        some.A.middleRows(row, of_each) = equations.A.middleRows(of_each * i, of_each);
+        some.b.segment(row, of_each) = equations.b.segment(of_each * i, of_each);
+        row += of_each;
+    }
+    return some;
+}
+
 }  // namespace
 
 std::optional<RegistrationSolution> solve_freely(const RegistrationEquations& equations) {
@@ -84,6 +106,39 @@ std::optional<RegistrationSolution> solve_freely(const RegistrationEquations& eq
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> X(solution.data());
     return RegistrationSolution{nearest_rotation(X), solution.segment<3>(of_rotation),
                                 solution.tail(A.cols() - of_rotation - 3)};
+}
+
+std::vector<Index> find_consistent(const RegistrationEquations& equations, Index of_each) {
+    constexpr std::uint64_t seed = 8724;  // any: it only has to be the same every time
+    constexpr std::uint64_t start_count = 60;
+    constexpr Index few = 5;
+    constexpr double far = 2.5;
+    const Index count = equations.A.rows() / of_each;
+    std::vector<Index> kept(static_cast<std::size_t>(count));
+    std::iota(kept.begin(), kept.end(), Index{0});
+    if (count < 2 * few) return kept;
+    VectorXd best;
+    double least = std::numeric_limits<double>::infinity();
+    const auto consider = [&](const std::vector<Index>& views) {
+        const auto solution = solve_freely(part(equations, views, of_each));
+        if (!solution) return;
+        const VectorXd all = misses(equations, *solution).reshaped(of_each, count).colwise().norm();
+        const double median = quantile(all, 0.5, QuantileRule::Upper);
+        if (!(median < least)) return;
+        least = median;
+        best = all;
+    };
+    for (std::uint64_t start = 0; start < start_count; ++start) {
+        consider(RandomStream(seed, start).subset(count, few));
+    }
+    for (int again = 0; again < 3 && best.size() > 0; ++again) {
+        kept.clear();
+        for (Index i = 0; i < count; ++i) {
+            if (best[i] <= far * least) kept.push_back(i);
+        }
+        consider(kept);
+    }
+    return kept;
 }
 
 RegistrationSolution solve_for_rotation(const RegistrationEquations& equations) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "posewise/core/types.hpp"
 
@@ -25,6 +26,12 @@ struct RegistrationSolution {
 /// points that all lie in a plane (a planar robot), or a robot without a length to compare with
 /// (two axes that cross), leave a part of X open.
 std::optional<RegistrationSolution> solve_freely(const RegistrationEquations& equations);
+
+/// Which views belong together, of equations that are so many of each: some may show another pose
+/// than the joints say, or a board's corners in another order. Of solve_freely() by few views that
+/// counts which misses the median view least [Rousseeuw 1984]; views that it misses by far more are
+/// left out.
+std::vector<Index> find_consistent(const RegistrationEquations& equations, Index of_each);
 
 /// Least squares over the rotations X; c and t of least norm where several are as good. Needs at
 /// least as many equations as unknowns.

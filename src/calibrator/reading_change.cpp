@@ -290,7 +290,9 @@ bool has_kind(const ReadingChanges& changes, Kind kind) {
 
 Index count_changes(const ReadingChanges& changes) {
     const auto twice = std::ranges::count_if(changes, [](const ReadingChange& change) {
-        return change.kind == Kind::Zero || (change.kind == Kind::Coupled && change.factor < 0);
+        const bool is_mirrored = is_reversed(change, 0) || is_reversed(change, 1);
+        return change.kind == Kind::Zero || (change.kind == Kind::Coupled && change.factor < 0) ||
+               (change.kind == Kind::Image && is_mirrored);
     });
     return std::ssize(changes) + twice;
 }

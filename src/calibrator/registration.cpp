@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "core/statistics.hpp"
 #include "core/text.hpp"
 #include "least_squares.hpp"
 #include "linear_registration.hpp"
@@ -8,6 +9,7 @@
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/measurements.hpp"
 
 namespace posewise {
@@ -109,15 +111,50 @@ std::string describe_poor_views(const Seen& is_told) {
         told, detail::count_of(is_told.rows(), "view"), told == 1 ? "s" : "");
 }
 
+/// Where the polish begins, and by which configurations.
+struct Start : Registration {
+    std::vector<Index> configurations{};  ///< none: by all
+};
+
+/// Those views of a camera that show the board where the others do.
+std::vector<Index> find_views(const Campaign& campaign, const ObservedPoints& observed,
+                              const Measurements& points) {
+    const auto told = points.is_seen.rowwise().any();
+    std::vector<Index> views;
+    for (Index i = 0; i < told.size(); ++i) {
+        if (told[i]) views.push_back(i);
+    }
+    const auto equations = state_equations(campaign, observed.points, points);
+    std::vector<Index> kept;
+    for (const Index k : detail::find_consistent(equations, 3 * observed.points.count())) {
+        kept.push_back(views[static_cast<std::size_t>(k)]);
+    }
+    return kept;
+}
+
 /// Base and sensor's unknowns that solve the linear equations, the base a rotation.
-Registration solve_linear(const Campaign& campaign, const ObservedPoints& observed,
-                          const Measurements& means) {
-    const Measurements points = as_points(means, observed);
+Start solve_linear(const Campaign& campaign, const ObservedPoints& observed,
+                   const Measurements& measured) {
+    Measurements means = measured;
+    Measurements points = as_points(means, observed);
+    const Seen is_told = points.is_seen;
+    std::vector<Index> views;
+    if (campaign.sensor->has_pixels()) {
+        const Index told = points.is_seen.rowwise().any().count();
+        const Index shown = views_with_enough(*campaign.sensor, means.is_seen);
+        if (2 * told < shown) return {{campaign.nominal, describe_strange_views(told, shown)}};
+        // Of several cameras each may be the one that is at fault, in whatever views it has.
+        if (camera_count(*campaign.sensor) == 1) {
+            views = find_views(campaign, observed, points);
+            means = take(means, views);
+            points = take(points, views);
+        }
+    }
     const auto equations = state_equations(campaign, observed.points, points);
     if (equations.A.rows() < equations.A.cols()) {
         const bool is_of_views = campaign.sensor->has_pixels();
-        return {campaign.nominal, is_of_views ? describe_poor_views(points.is_seen)
-                                              : describe_shortage(campaign, means)};
+        return {{campaign.nominal,
+                 is_of_views ? describe_poor_views(is_told) : describe_shortage(campaign, means)}};
     }
     const auto free = detail::solve_freely(equations);
     const auto solution = free ? *free : detail::solve_for_rotation(equations);
@@ -126,16 +163,16 @@ Registration solve_linear(const Campaign& campaign, const ObservedPoints& observ
     found.world_from_base.linear() = R;
     found.world_from_base.translation() = -R * solution.c;
     found.sensor = observed.unknowns(solution.t);
-    if (free) return {found, {}};
+    if (free) return {{found, {}}, views};
     const auto confused = confused_parameters(detail::make_problem(campaign, means), found);
-    return {found, confused.empty() ? "" : describe_shortage(campaign, means, confused)};
+    return {{found, confused.empty() ? "" : describe_shortage(campaign, means, confused)}, views};
 }
 
-/// Where the polish begins; the robot has no parameters.
-Registration find_start(const Campaign& campaign, const Measurements& measurements) {
+/// The robot has no parameters.
+Start find_start(const Campaign& campaign, const Measurements& measurements) {
     const Sensor& sensor = *campaign.sensor;
     std::string unseen = detail::describe_unseen_target(campaign, measurements);
-    if (!unseen.empty()) return {campaign.nominal, std::move(unseen)};
+    if (!unseen.empty()) return {{campaign.nominal, std::move(unseen)}};
     if (base_parameter_count(campaign) == 6) {
         const Measurements means = mean_measurements(sensor, measurements);
         if (const auto observed = sensor.observed_points(means)) {
@@ -150,7 +187,40 @@ Registration find_start(const Campaign& campaign, const Measurements& measuremen
             "and {})",
             sensor.observed_points() ? "lengths" : sensor.words().readings, sensor.words().key));
     }
-    return {campaign.nominal, {}};
+    return {{campaign.nominal, {}}};
+}
+
+/// Those that are missed by no more than some times what most of `by` are.
+std::vector<Index> find_near(const Campaign& campaign, const Measurements& measurements,
+                             const Parameters& parameters, const std::vector<Index>& by) {
+    constexpr double far = 8;
+    const VectorXd all =
+        (squared_angles(campaign, parameters, measurements).rowwise().sum().array() /
+         times_seen(measurements).cwiseMin(1).rowwise().sum().array().max(1))
+            .sqrt();
+    const double most = far * detail::quantile(all(by), 0.5, detail::QuantileRule::Upper);
+    std::vector<Index> near;
+    for (Index i = 0; i < all.size(); ++i) {
+        if (all[i] <= most) near.push_back(i);
+    }
+    return near;
+}
+
+/// On the true residuals of the start's configurations, then of all that are near.
+Registration polish(const Campaign& campaign, const Measurements& measurements,
+                    const Start& start) {
+    const std::vector<Index>& by = start.configurations;
+    const auto polish_by = [&](const Measurements& some, const Parameters& from) {
+        Estimate polished = identify(campaign, some, from);
+        return Registration{std::move(polished.parameters), std::move(polished.undetermined)};
+    };
+    if (by.empty() || std::ssize(by) == measurements.configuration_count()) {
+        return polish_by(measurements, start.parameters);
+    }
+    const Registration by_some = polish_by(take(measurements, by), start.parameters);
+    if (!by_some.is_determined()) return by_some;
+    const auto near = find_near(campaign, measurements, by_some.parameters, by);
+    return near == by ? by_some : polish_by(take(measurements, near), by_some.parameters);
 }
 
 /// What a prior leaves open of base and sensor, as if what it tells were known.
@@ -186,10 +256,10 @@ Registration register_roughly(const Campaign& campaign, const Measurements& meas
 
 Registration register_base_and_targets(const Campaign& campaign, const Measurements& measurements) {
     const Campaign expected = with_expected_robot(campaign);
-    Registration registered = find_start(expected, measurements);
+    const Start start = find_start(expected, measurements);
+    Registration registered = start;
     if (registered.is_determined()) {
-        Estimate polished = identify(expected, measurements, registered.parameters);
-        registered = {std::move(polished.parameters), std::move(polished.undetermined)};
+        registered = polish(expected, measurements, start);
     }
     const auto& prior = campaign.prior;
     if (!registered.is_determined() && prior && can_begin_at(*prior, campaign)) {

@@ -1,10 +1,14 @@
 #include "board_pose.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "board_starts.hpp"
 #include "camera_model.hpp"
+#include "core/decompositions.hpp"
+#include "core/statistics.hpp"
 #include "posewise/model/chain.hpp"
 
 namespace posewise::detail {
@@ -58,6 +62,12 @@ class Bundle {
     const Intrinsics& intrinsics() const { return intrinsics_; }
     const std::vector<Isometry3d>& poses() const { return poses_; }
     double squares() const { return squares_; }
+    /// Of what is left in one view, px.
+    double rms(std::size_t view) const {
+        return std::sqrt(squares_in(lens_of(intrinsics_), views_[view], poses_[view]) /
+                         static_cast<double>(2 * views_[view].corners.size())) /
+               kpx_per_px;
+    }
 
     void polish() {
         squares_ = squares_of(intrinsics_, poses_);
@@ -82,12 +92,17 @@ class Bundle {
         if (!(intrinsics.fx > 0 && intrinsics.fy > 0)) return INFINITY;
         const Lens lens = lens_of(intrinsics);
         double sum = 0;
-        for (std::size_t i = 0; i < views_.size(); ++i) {
-            for (std::size_t k = 0; k < views_[i].corners.size(); ++k) {
-                const Vector3d point = poses[i] * views_[i].corners[k];
-                if (point.z() <= 0) return INFINITY;
-                sum += (kpx_per_px * views_[i].pixels[k] - place_of(lens, point)).squaredNorm();
-            }
+        for (std::size_t i = 0; i < views_.size(); ++i)
+            sum += squares_in(lens, views_[i], poses[i]);
+        return sum;
+    }
+
+    static double squares_in(const Lens& lens, const BoardView& view, const Isometry3d& pose) {
+        double sum = 0;
+        for (std::size_t k = 0; k < view.corners.size(); ++k) {
+            const Vector3d point = pose * view.corners[k];
+            if (point.z() <= 0) return INFINITY;
+            sum += (kpx_per_px * view.pixels[k] - place_of(lens, point)).squaredNorm();
         }
         return sum;
     }
@@ -128,6 +143,32 @@ class Bundle {
     std::vector<Index> unknown_;
     double squares_ = 0;
 };
+
+/// RMS distances of places in an image from their middle along the direction of most, and across.
+Vector2d spread_of(const std::vector<Vector2d>& pixels) {
+    RowMatrixXd places(std::ssize(pixels), 2);
+    for (Index k = 0; k < places.rows(); ++k) places.row(k) = pixels[static_cast<std::size_t>(k)];
+    places.rowwise() -= places.colwise().mean().eval();
+    return singular_directions(places).values / std::sqrt(static_cast<double>(places.rows()));
+}
+
+/// Whether a view may be of a board: `rms` is what the best pose, or homography, leaves of u and v.
+bool is_of_a_board(const BoardView& view, double rms) {
+    constexpr double thin = 0.01, far = 0.25;
+    const Vector2d spread = spread_of(view.pixels);
+    return spread[1] > thin * spread[0] && rms <= far * spread.norm();
+}
+
+/// What the best homography to the image leaves of u and v, px.
+double left_by_homography(const BoardView& view, const Isometry3d& plane) {
+    const std::vector<Vector2d> places = in_plane(view.corners, plane);
+    const Matrix3d H = homography(places, view.pixels);
+    double squares = 0;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        squares += ((H * places[k].homogeneous()).hnormalized() - view.pixels[k]).squaredNorm();
+    }
+    return std::sqrt(squares / static_cast<double>(2 * places.size()));
+}
 
 /// Equations of one view in B11, B22, B13, B23, B33 of B = K^-T K^-1 without skew [Zhang 2000,
 /// (8)].
@@ -200,15 +241,51 @@ std::optional<Eigen::Vector4d> start_of(const std::vector<BoardView>& views,
 
 }  // namespace
 
-std::optional<Isometry3d> find_board(const BoardView& view, const Intrinsics& intrinsics) {
-    if (view.corners.size() < 4 || are_in_line(view.corners)) return std::nullopt;
+bool shows_enough(const BoardView& view) {
+    return view.corners.size() >= 4 && !are_in_line(view.corners);
+}
+
+double most_left_over(const std::vector<double>& left_over) {
+    constexpr double far = 10;
+    constexpr double least = 1;  // px
+    std::vector<double> finite;
+    std::ranges::copy_if(left_over, std::back_inserter(finite),
+                         [](double left) { return std::isfinite(left); });
+    if (finite.empty()) return least;
+    const Eigen::Map<const VectorXd> all(finite.data(), std::ssize(finite));
+    return std::max(least, far * quantile(all, 0.5, QuantileRule::Upper));
+}
+
+std::vector<BoardView> keep_plane_views(const std::vector<BoardView>& views) {
+    std::vector<Vector3d> all;
+    for (const BoardView& view : views) {
+        all.insert(all.end(), view.corners.begin(), view.corners.end());
+    }
+    const auto plane = all.empty() ? std::nullopt : plane_of(all);
+    if (!plane) return views;
+    std::vector<double> left_over;
+    for (const BoardView& view : views) {
+        const double left =
+            spread_of(view.pixels)[1] > 0 ? left_by_homography(view, *plane) : INFINITY;
+        left_over.push_back(is_of_a_board(view, left) ? left : INFINITY);
+    }
+    const double most = most_left_over(left_over);
+    std::vector<BoardView> kept;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        if (left_over[i] <= most) kept.push_back(views[i]);
+    }
+    return kept;
+}
+
+std::optional<BoardFit> find_board(const BoardView& view, const Intrinsics& intrinsics) {
+    if (!shows_enough(view) || !is_of_a_board(view, 0)) return std::nullopt;
     std::vector<Vector2d> directions;
     for (const Vector2d& pixel : view.pixels) {
         const auto direction = undistort(intrinsics, pixel);
         if (!direction) return std::nullopt;
         directions.push_back(*direction);
     }
-    std::optional<Isometry3d> best;
+    std::optional<BoardFit> best;
     double least = INFINITY;
     const std::vector<BoardView> one{view};
     for (const Isometry3d& start : board_starts(view.corners, directions)) {
@@ -216,8 +293,9 @@ std::optional<Isometry3d> find_board(const BoardView& view, const Intrinsics& in
         bundle.polish();
         if (!(bundle.squares() < least)) continue;
         least = bundle.squares();
-        best = bundle.poses().front();
+        best = {bundle.poses().front(), bundle.rms(0)};
     }
+    if (best && !is_of_a_board(view, best->rms)) return std::nullopt;
     return best;
 }
 
@@ -247,7 +325,7 @@ std::optional<Intrinsics> find_intrinsics(const std::vector<BoardView>& views,
         const auto pose = find_board(view, start);
         if (!pose) continue;
         found.push_back(view);
-        poses.push_back(*pose);
+        poses.push_back(pose->board);
     }
     if (found.empty()) return std::nullopt;
     Bundle bundle(found, start, poses, unknown);

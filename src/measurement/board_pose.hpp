@@ -13,9 +13,24 @@ struct BoardView {
     std::vector<Vector2d> pixels;
 };
 
-/// The board in the camera's frame by least squares of the pixels, from whichever of board_starts()
-/// ends best. Nothing if fewer than four corners are seen, or only some in one line.
-std::optional<Isometry3d> find_board(const BoardView& view, const Intrinsics& intrinsics);
+/// Whether four corners are seen, or more, that are not all on one line of the board.
+bool shows_enough(const BoardView& view);
+
+struct BoardFit {
+    Isometry3d board;  ///< in the camera's frame
+    double rms = 0;    ///< of what is left of u and v, px
+};
+
+/// The board by least squares of the pixels, from whichever of board_starts() ends best. Nothing if
+/// too little of it is seen, or no pose of it is seen so: corners at one place or on one line in
+/// the image, or more than a quarter of their spread left over.
+std::optional<BoardFit> find_board(const BoardView& view, const Intrinsics& intrinsics);
+
+/// Beyond which a view is not of this board, where the others leave so much over, px.
+double most_left_over(const std::vector<double>& left_over);
+
+/// Those of a plane board whose corners are not grossly wrong, whatever the lens; all of another.
+std::vector<BoardView> keep_plane_views(const std::vector<BoardView>& views);
 
 /// Intrinsic parameters from several views of a plane board: closed form without distortion
 /// [Zhang 2000], then least squares of all pixels with all boards' poses. Those marked known are

@@ -8,6 +8,7 @@
 #include "board_starts.hpp"
 #include "camera_view.hpp"
 #include "core/statistics.hpp"
+#include "core/text.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/measurements.hpp"
@@ -67,8 +68,9 @@ std::vector<std::vector<std::optional<Isometry3d>>> boards_of(
         for (Index c = 0; c < sensor.camera_count(); ++c) {
             const auto view =
                 view_of(sensor, c, means.observations.row(i).transpose(), means.is_seen.row(i));
-            seen.push_back(
-                detail::find_board(view, cameras[static_cast<std::size_t>(c)].intrinsics));
+            const auto fit =
+                detail::find_board(view, cameras[static_cast<std::size_t>(c)].intrinsics);
+            seen.push_back(fit ? std::optional(fit->board) : std::nullopt);
             count += seen.back() ? 1 : 0;
         }
         if (count < 2) continue;
@@ -76,6 +78,19 @@ std::vector<std::vector<std::optional<Isometry3d>>> boards_of(
         ++found;
     }
     return boards;
+}
+
+/// By which a camera's views of this board are told from those of something else, px.
+double most_left_over(const CameraSensor& sensor, Index camera, const Intrinsics& intrinsics,
+                      const Measurements& means) {
+    constexpr Index enough = 40;
+    std::vector<double> left_over;
+    for (const Index i : evenly_spaced(means.configuration_count(), enough)) {
+        const auto view =
+            view_of(sensor, camera, means.observations.row(i).transpose(), means.is_seen.row(i));
+        if (const auto fit = detail::find_board(view, intrinsics)) left_over.push_back(fit->rms);
+    }
+    return detail::most_left_over(left_over);
 }
 
 /// Where further cameras are in the first one's frame, by views of the board that they share.
@@ -111,9 +126,41 @@ void place_cameras(const CameraSensor& sensor, const Measurements& means,
 
 }  // namespace
 
-ObservedPoints CameraSensor::points_with(const std::vector<PlacedCamera>& cameras) const {
-    const auto positions = [this, cameras](const VectorXd& observation,
-                                           const SeenTargets& is_seen) {
+std::optional<double> CameraSensor::left_by_any_pose(Index camera, const VectorXd& unknowns,
+                                                     const ConstNumbers& observation,
+                                                     const SeenTargets& is_seen) const {
+    const detail::BoardView view = view_of(*this, camera, observation, is_seen);
+    if (!detail::shows_enough(view)) return std::nullopt;
+    const auto fit = detail::find_board(view, placed(camera, unknowns).intrinsics);
+    return fit ? fit->rms : std::numeric_limits<double>::infinity();
+}
+
+std::string describe_strange_views(Index told, Index shown) {
+    return fmt::format(
+        "the corners of {} of {} fit no view of such a board from anywhere; are columns and rows "
+        "of the board, the corners' numbers and the columns u and v right?",
+        shown - told, detail::count_of(shown, "view"));
+}
+
+Index views_with_enough(const Sensor& sensor, const Seen& is_seen) {
+    const auto* const camera = dynamic_cast<const CameraSensor*>(&sensor);
+    if (camera == nullptr) return 0;
+    Index count = 0;
+    for (Index i = 0; i < is_seen.rows(); ++i) {
+        bool is_enough = false;
+        for (Index c = 0; c < camera->camera_count() && !is_enough; ++c) {
+            is_enough = detail::shows_enough(
+                view_of(*camera, c, VectorXd::Zero(camera->row_count()), is_seen.row(i)));
+        }
+        count += is_enough ? 1 : 0;
+    }
+    return count;
+}
+
+ObservedPoints CameraSensor::points_with(const std::vector<PlacedCamera>& cameras,
+                                         const std::vector<double>& most_left) const {
+    const auto positions = [this, cameras, most_left](const VectorXd& observation,
+                                                      const SeenTargets& is_seen) {
         // By the camera that sees most of it.
         std::vector<std::pair<std::size_t, detail::BoardView>> views;
         for (std::size_t c = 0; c < cameras.size(); ++c) {
@@ -122,9 +169,9 @@ ObservedPoints CameraSensor::points_with(const std::vector<PlacedCamera>& camera
         std::ranges::stable_sort(views, std::ranges::greater{},
                                  [](const auto& one) { return one.second.corners.size(); });
         for (const auto& [c, view] : views) {
-            const auto board = detail::find_board(view, cameras[c].intrinsics);
-            if (!board) continue;
-            const Isometry3d in_first = cameras[c].in_first * *board;
+            const auto fit = detail::find_board(view, cameras[c].intrinsics);
+            if (!fit || fit->rms > most_left[c]) continue;
+            const Isometry3d in_first = cameras[c].in_first * fit->board;
             const Isometry3d place = setup_.is_on_flange ? in_first.inverse() : in_first;
             return VectorXd(detail::points_of(place).reshaped());
         }
@@ -141,7 +188,7 @@ ObservedPoints CameraSensor::points_with(const std::vector<PlacedCamera>& camera
 }
 
 std::optional<ObservedPoints> CameraSensor::observed_points() const {
-    return points_with({{Isometry3d::Identity(), setup_.intrinsics}});
+    return points_with({{Isometry3d::Identity(), setup_.intrinsics}}, {INFINITY});
 }
 
 std::optional<ObservedPoints> CameraSensor::observed_points(const Measurements& means) const {
@@ -154,12 +201,15 @@ std::optional<ObservedPoints> CameraSensor::observed_points(const Measurements& 
         for (Index i = 0; i < means.configuration_count(); ++i) {
             auto view =
                 view_of(*this, c, means.observations.row(i).transpose(), means.is_seen.row(i));
-            if (view.corners.size() >= 4 && !detail::are_in_line(view.corners)) {
-                views.push_back(std::move(view));
-            }
+            if (detail::shows_enough(view)) views.push_back(std::move(view));
         }
+        const Index shown = std::ssize(views);
+        views = detail::keep_plane_views(views);
         const auto found = detail::find_intrinsics(views, one.intrinsics, one.is_known, one.image);
         const bool is_stated = one.intrinsics.fx > 0 && one.intrinsics.fy > 0;
+        if (!found && 2 * std::ssize(views) < shown) {
+            throw InputError(describe_strange_views(std::ssize(views), shown));
+        }
         if (!found && !is_stated) {
             throw InputError(fmt::format(
                 "the intrinsic parameters of {} do not follow from these views; more views of a "
@@ -171,7 +221,12 @@ std::optional<ObservedPoints> CameraSensor::observed_points(const Measurements& 
         if (found) cameras.back().intrinsics = *found;
     }
     place_cameras(*this, means, cameras);
-    return points_with(cameras);
+    std::vector<double> most_left;
+    for (Index c = 0; c < camera_count(); ++c) {
+        most_left.push_back(
+            most_left_over(*this, c, cameras[static_cast<std::size_t>(c)].intrinsics, means));
+    }
+    return points_with(cameras, most_left);
 }
 
 }  // namespace posewise

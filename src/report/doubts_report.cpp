@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "core/format.hpp"
@@ -101,6 +102,50 @@ std::string describe_distance(const DistanceDoubt& distance) {
         detail::quote(distance.from), detail::format_short(mm_per_m * distance.found, 4));
 }
 
+/// Views of one kind together.
+void describe_views(const std::vector<ViewDoubt>& views, const std::string& at,
+                    std::vector<std::string>& sentences) {
+    std::vector<ViewDoubt> rest = views;
+    while (!rest.empty()) {
+        const auto is_alike = [one = rest.front()](const ViewDoubt& other) {
+            return other.is_no_board == one.is_no_board && other.order == one.order &&
+                   other.camera == one.camera &&
+                   std::isfinite(other.distance) == std::isfinite(one.distance);
+        };
+        std::vector<std::string> names;
+        ViewDoubt worst = rest.front();
+        for (const ViewDoubt& view : rest) {
+            if (!is_alike(view)) continue;
+            names.push_back(view.sample);
+            worst.distance = std::max(worst.distance, view.distance);
+        }
+        std::erase_if(rest, is_alike);
+        const std::string by = fmt::format("{} px RMS, other views by {}",
+                                           detail::format_short(1e3 * worst.distance, 3),
+                                           detail::format_short(1e3 * worst.others, 3));
+        std::string wrong, mend = "find them anew";
+        if (worst.is_no_board && !std::isfinite(worst.distance)) {
+            wrong =
+                "corners at one place, on one line or scattered, as no pose of the board shows "
+                "them";
+        } else if (worst.is_no_board && worst.order.empty()) {
+            wrong = fmt::format("corners are off any pose of the board by {}", by);
+        } else if (!worst.order.empty()) {
+            wrong = fmt::format("corners are numbered {} (off by {}; renumbered they fit)",
+                                worst.order, by);
+            mend = "renumber them";
+        } else {
+            wrong = fmt::format("the board is not where the joint values say (off by {})", by);
+            mend = "are these another view's joint values, or was the board moved? Mend them";
+        }
+        sentences.push_back(
+            fmt::format("{}{} {}{}: {}; {} or leave {} out, {}", at,
+                        names.size() == 1 ? "view" : "views", fmt::join(names, ", "),
+                        worst.camera > 0 ? fmt::format(" of camera {}", worst.camera + 1) : "",
+                        wrong, mend, names.size() == 1 ? "it" : "them", spell(exclusion(names))));
+    }
+}
+
 void describe_camera(const CameraDoubt& doubt, const std::string& at,
                      std::vector<std::string>& sentences) {
     if (doubt.board_factor != 1) {
@@ -125,6 +170,13 @@ void describe_camera(const CameraDoubt& doubt, const std::string& at,
             at, doubt.camera > 0 ? fmt::format(" of camera {}", doubt.camera + 1) : "", (*point)[0],
             (*point)[1], doubt.is_of_image ? "the image" : "what is seen", doubt.middle[0],
             doubt.middle[1]));
+    }
+    if (const auto& focal = doubt.focal_lengths) {
+        sentences.push_back(fmt::format(
+            "{}the focal lengths found{} are {:.0f} and {:.0f} px, as of a mirrored image: are the "
+            "columns u and v exchanged, or the corners numbered in mirrored order?",
+            at, doubt.camera > 0 ? fmt::format(" of camera {}", doubt.camera + 1) : "", (*focal)[0],
+            (*focal)[1]));
     }
     if (doubt.scatter > 0) {
         sentences.push_back(fmt::format(
@@ -173,6 +225,7 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
         sentences.push_back(at + describe_misfit(calibration.campaign, *doubts.misfit));
     }
     if (!doubts.planes.empty()) sentences.push_back(at + describe_planes(doubts.planes));
+    describe_views(doubts.views, at, sentences);
     if (doubts.camera) describe_camera(*doubts.camera, at, sentences);
     if (!doubts.places.empty() && !has_moved)
         sentences.push_back(at + describe_places(doubts.places));

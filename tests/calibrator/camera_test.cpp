@@ -7,6 +7,7 @@
 #include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/random.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "support/robots.hpp"
@@ -205,6 +206,48 @@ TEST(Camera, SaysThatViewsShowTooLittle) {
     }
     const std::string why = register_base_and_targets(blind(exact), measured).undetermined;
     EXPECT_NE(why.find("0 of 12 views show enough of the board"), std::string::npos) << why;
+}
+
+TEST(Camera, SaysThatCornersFitNoViewOfTheBoard) {
+    for (const CameraSetup& setup : {fixed_camera(), unknown_lens(fixed_camera())}) {
+        const Campaign exact = hand_eye(setup);
+        Simulation simulated =
+            simulate(exact, {.pose_count = 12, .repeats = 1, .truth_seed = 4, .seed = 3});
+        Measurements& measured = simulated.measurements;
+        RandomStream stream(6);
+        for (double& place : measured.observations.reshaped()) place = stream.uniform(0, 0.9);
+        std::string why;
+        try {
+            why = register_base_and_targets(blind(exact), measured).undetermined;
+        } catch (const InputError& error) {
+            why = error.what();
+        }
+        EXPECT_NE(why.find("12 of 12 views fit no view of such a board"), std::string::npos) << why;
+    }
+}
+
+/// A third of the views is of a board that is numbered from the other end, as finders of
+/// chessboards do.
+TEST(Camera, IsRegisteredByTheViewsThatBelongTogether) {
+    for (const CameraSetup& setup : {fixed_camera(), unknown_lens(fixed_camera())}) {
+        Campaign exact = hand_eye(setup);
+        exact.model_error = exact.model_error_orientation = 0;
+        Simulation simulated =
+            simulate(exact, {.pose_count = 30, .repeats = 1, .truth_seed = 4, .seed = 3});
+        Measurements& measured = simulated.measurements;
+        for (Index i = 0; i < 30; i += 3) {
+            const RowMatrixXd right = measured.observations.row(i);
+            const Seen seen = measured.is_seen.row(i);
+            for (Index k = 0; k < 24; ++k) {
+                measured.observations.row(i).segment<2>(2 * k) =
+                    right.row(0).segment<2>(2 * (23 - k));
+                measured.is_seen(i, k) = seen(0, 23 - k);
+            }
+        }
+        const Registration found = register_base_and_targets(blind(exact), measured);
+        ASSERT_TRUE(found.is_determined()) << found.undetermined;
+        EXPECT_LT((found.parameters.sensor - simulated.truth.sensor).head<3>().norm(), 2e-3);
+    }
 }
 
 TEST(Camera, MustShareViewsWithTheOthers) {

@@ -168,7 +168,8 @@ TEST(BoardPose, IsFoundFromCornersInAPlaneAndFromOthers) {
                 const Isometry3d pose = somewhere(stream);
                 const auto found = find_board(view_of(corners, lens, pose), lens);
                 ASSERT_TRUE(found);
-                EXPECT_LT((found->matrix() - pose.matrix()).norm(), 1e-8);
+                EXPECT_LT((found->board.matrix() - pose.matrix()).norm(), 1e-8);
+                EXPECT_LT(found->rms, 1e-6);
             }
         }
     }

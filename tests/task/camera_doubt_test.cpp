@@ -4,6 +4,7 @@
 
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/random.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/doubts.hpp"
@@ -166,6 +167,141 @@ TEST(CameraDoubt, NoticesMirroredNumbers) {
     EXPECT_TRUE(doubt->is_seen_from_back);
 }
 
+/// Of sample 9 of the good views.
+constexpr Index spoilt = 9;
+using Spoil = void (*)(Measurements&);
+
+void renumber(Measurements& measured, const std::vector<Index>& meant) {
+    const Measurements right = measured;
+    for (Index k = 0; k < 24; ++k) {
+        const Index other = meant[static_cast<std::size_t>(k)];
+        measured.observations.row(spoilt).segment<2>(2 * k) =
+            right.observations.row(spoilt).segment<2>(2 * other);
+        measured.is_seen(spoilt, k) = right.is_seen(spoilt, other);
+    }
+}
+
+std::vector<ViewDoubt> doubts_with(Spoil spoil) {
+    const auto& [campaign, measured] = good();
+    Measurements wrong = measured;
+    spoil(wrong);
+    const Parameters at = registered(campaign, wrong);
+    // Neither the start nor what else is said follows from that view.
+    EXPECT_LT((at.sensor - registered(campaign, measured).sensor).cwiseAbs().maxCoeff(), 0.01);
+    const Doubts doubts = find_doubts(campaign, wrong, at, {});
+    EXPECT_FALSE(doubts.misfit);
+    EXPECT_FALSE(doubts.camera);
+    EXPECT_TRUE(doubts.places.empty());
+    return doubts.views;
+}
+
+TEST(ViewDoubts, AreNoneOfWhatIsRight) {
+    EXPECT_TRUE(doubts_with([](Measurements&) {}).empty());
+}
+
+TEST(ViewDoubts, NameCornersAtOnePlaceOnALineAndScattered) {
+    const std::vector<Spoil> spoils{[](Measurements& wrong) {
+                                        for (Index k = 1; k < 24; ++k) {
+                                            wrong.observations.row(spoilt).segment<2>(2 * k) =
+                                                wrong.observations.row(spoilt).head<2>();
+                                        }
+                                    },
+                                    [](Measurements& wrong) {
+                                        for (Index k = 0; k < 24; ++k) {
+                                            wrong.observations(spoilt, 2 * k + 1) =
+                                                0.3 + 0.1 * wrong.observations(spoilt, 2 * k);
+                                        }
+                                    },
+                                    [](Measurements& wrong) {
+                                        RandomStream stream(8);
+                                        for (Index k = 0; k < 48; ++k)
+                                            wrong.observations(spoilt, k) = stream.uniform(0, 0.9);
+                                    }};
+    for (const Spoil spoil : spoils) {
+        const auto views = doubts_with(spoil);
+        ASSERT_EQ(views.size(), 1U);
+        EXPECT_EQ(views[0].sample, good().measured.ids[spoilt]);
+        EXPECT_TRUE(views[0].is_no_board);
+        EXPECT_TRUE(views[0].order.empty());
+    }
+}
+
+TEST(ViewDoubts, NameTheOrderThatFits) {
+    const std::vector<Index> seen = targets_seen(good().measured.is_seen.row(spoilt));
+    const std::vector<std::pair<Spoil, std::string>> spoils{
+        {[](Measurements& wrong) {
+             std::vector<Index> meant;
+             for (Index k = 0; k < 24; ++k) meant.push_back(23 - k);
+             renumber(wrong, meant);
+         },
+         "from the board's other end"},
+        {[](Measurements& wrong) {
+             std::vector<Index> meant;
+             for (Index k = 0; k < 24; ++k) meant.push_back(k - k % 6 + 5 - k % 6);
+             renumber(wrong, meant);
+         },
+         "in mirrored order"},
+        {[](Measurements& wrong) {
+             std::vector<Index> meant;
+             for (Index k = 0; k < 24; ++k) meant.push_back(k);
+             const std::vector<Index> seen = targets_seen(wrong.is_seen.row(spoilt));
+             std::swap(meant[static_cast<std::size_t>(seen.front())],
+                       meant[static_cast<std::size_t>(seen.back())]);
+             renumber(wrong, meant);
+         },
+         "with " + std::to_string(seen.front() + 1) + " and " + std::to_string(seen.back() + 1) +
+             " exchanged"}};
+    for (const auto& [spoil, order] : spoils) {
+        const auto views = doubts_with(spoil);
+        ASSERT_EQ(views.size(), 1U) << order;
+        EXPECT_EQ(views[0].sample, good().measured.ids[spoilt]);
+        EXPECT_EQ(views[0].order, order);
+        EXPECT_EQ(views[0].is_no_board, order.starts_with("with"));
+        EXPECT_GT(views[0].distance, 5 * views[0].others);
+    }
+}
+
+TEST(ViewDoubts, NameAViewFromAnotherPose) {
+    const auto views = doubts_with([](Measurements& wrong) {
+        wrong.configurations.row(spoilt) = wrong.configurations.row(3);
+    });
+    ASSERT_EQ(views.size(), 1U);
+    EXPECT_EQ(views[0].sample, good().measured.ids[spoilt]);
+    EXPECT_FALSE(views[0].is_no_board);
+    EXPECT_TRUE(views[0].order.empty());
+}
+
+TEST(ViewDoubts, AreFaultsOfLeastSquaresAlone) {
+    const auto& [campaign, measured] = good();
+    Measurements wrong = measured;
+    wrong.observations.row(spoilt).setConstant(0.4);
+    CalibrationOptions options;
+    options.folds = 0;
+    const Calibration by_squares = calibrate(campaign, wrong, options);
+    ASSERT_FALSE(by_squares.faults.empty());
+    EXPECT_EQ(by_squares.faults.front(),
+              "view '" + good().measured.ids[spoilt] + "' contradicts the others");
+    options.joint.loss.kind = LossKind::Cauchy;
+    const Calibration robust = calibrate(campaign, wrong, options);
+    EXPECT_EQ(robust.doubts.views.size(), 1U);
+    EXPECT_TRUE(robust.faults.empty()) << robust.faults.front();
+}
+
+TEST(CameraDoubt, NamesAMirroredImageWhereTheLensIsFound) {
+    const auto& [campaign, measured] = good();
+    CameraSetup unknown = setup_of(campaign);
+    unknown.is_known.assign(unknown.intrinsics.names().size(), false);
+    const Campaign stated = with_setup(campaign, unknown);
+    Parameters at = registered(stated, measured);
+    EXPECT_FALSE(find_camera_doubt(stated, measured, at)->focal_lengths);
+    const auto& sensor = dynamic_cast<const CameraSensor&>(*stated.sensor);
+    at.sensor[sensor.first_intrinsic(0)] *= -1;
+    const auto doubt = find_camera_doubt(stated, measured, at);
+    ASSERT_TRUE(doubt);
+    ASSERT_TRUE(doubt->focal_lengths);
+    EXPECT_LT((*doubt->focal_lengths)[0], 0);
+}
+
 TEST(Misfit, NamesImageAxesThatWereExchanged) {
     const auto& [campaign, measured] = good();
     Measurements swapped = measured;
@@ -178,6 +314,12 @@ TEST(Misfit, NamesImageAxesThatWereExchanged) {
     ASSERT_TRUE(misfit->reading);
     EXPECT_EQ(misfit->reading->words, "v, u in place of u, v");
     EXPECT_NE(describe_misfit(campaign, *misfit).find(" px"), std::string::npos);
+    const Doubts doubts = find_doubts(campaign, swapped, registered(campaign, swapped), {});
+    EXPECT_TRUE(doubts.misfit && doubts.misfit->reading);
+    EXPECT_FALSE(doubts.camera);
+    EXPECT_TRUE(doubts.places.empty() && doubts.views.empty());
+    EXPECT_TRUE(
+        describe_misfit(campaign, *misfit).starts_with("they fit clearly better with v, u"));
 }
 
 }  // namespace

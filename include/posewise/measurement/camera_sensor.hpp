@@ -158,6 +158,12 @@ class CameraSensor final : public Sensor {
     /// Whether a camera sees a plane board's origin from behind its front.
     bool is_seen_from_back(Index camera, const Isometry3d& world_from_flange,
                            const VectorXd& unknowns) const;
+    /// RMS of u and v about the pose of the board that suits what one camera sees best, px:
+    /// infinite if none is seen so. Nothing: fewer than four corners are seen, or only some in one
+    /// line.
+    std::optional<double> left_by_any_pose(Index camera, const VectorXd& unknowns,
+                                           const ConstNumbers& observation,
+                                           const SeenTargets& is_seen) const;
     /// Unknowns for a pose of board or camera and intrinsic parameters, and further cameras.
     VectorXd unknowns(const Isometry3d& place, const Intrinsics& intrinsics,
                       const std::vector<PlacedCamera>& others = {}) const;
@@ -204,7 +210,9 @@ class CameraSensor final : public Sensor {
 
   private:
     bool has_unknown_place() const { return !setup_.known_place; }
-    ObservedPoints points_with(const std::vector<PlacedCamera>& cameras) const;
+    /// `most_left`: of each camera, what a view of the board may leave over, px.
+    ObservedPoints points_with(const std::vector<PlacedCamera>& cameras,
+                               const std::vector<double>& most_left) const;
 
     struct OwnUnknowns {
         Index first = 0;
@@ -221,6 +229,10 @@ class CameraSensor final : public Sensor {
 
 /// Number of the first target in files that list corners, CameraSetup::first_corner.
 Index first_corner(const Sensor& sensor);
+/// How many samples show, in one camera's image, four corners or more that are not in one line.
+Index views_with_enough(const Sensor& sensor, const Seen& is_seen);
+/// Where `shown` views show enough of the board and only `told` of them a pose of it.
+std::string describe_strange_views(Index told, Index shown);
 /// How many cameras a sensor has: 1 if it is none.
 Index camera_count(const Sensor& sensor);
 

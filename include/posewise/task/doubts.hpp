@@ -322,6 +322,22 @@ std::optional<DistanceDoubt> find_distance_doubt(const Campaign& campaign,
                                                  const Measurements& measurements,
                                                  const Estimate& estimate);
 
+/// A view of a board that contradicts the other views.
+struct ViewDoubt {
+    std::string sample;  ///< configuration, or one of its samples, as leave_out() takes it
+    Index camera = 0;    ///< from 0
+    /// Its corners fit no pose of the board; else one, but not that which the joints say.
+    bool is_no_board = false;
+    double distance = 0;  ///< by which its corners are off either, RMS of u and v, 1000 px
+    double others = 0;    ///< likewise, the median view
+    /// If they fit where the joints say once they are numbered so: "in mirrored order".
+    std::string order;
+};
+/// Of corners in images, if it is fewer than half of the views; `registered` is as for
+/// find_misfit().
+std::vector<ViewDoubt> find_view_doubts(const Campaign& campaign, const Measurements& measurements,
+                                        const Parameters& registered);
+
 /// What looks wrong of a camera's board or its intrinsic parameters.
 struct CameraDoubt {
     /// A calibration says that the board is so many times as large; 1: nothing is wrong.
@@ -334,6 +350,8 @@ struct CameraDoubt {
     std::optional<std::array<double, 2>> principal_point{};
     std::array<double, 2> middle{};
     bool is_of_image = false;  ///< whose size is stated; else the middle of what is seen
+    /// Focal lengths found, px, if one is negative.
+    std::optional<std::array<double, 2>> focal_lengths{};
     /// Most views show a plane board from behind its stated front.
     bool is_seen_from_back = false;
     /// Standard deviation of u and of v about any pose of the board, px, if it is another one than
@@ -375,6 +393,7 @@ struct Doubts {
     std::optional<ScatterDoubt> scatter;
     bool lacks_length = false;  ///< see lacks_length()
     std::optional<DistanceDoubt> distance;
+    std::vector<ViewDoubt> views;  ///< all others but `look` are of the rest
     std::optional<CameraDoubt> camera;
     /// If the calibrated robot is not shown to predict held-out poses better than the nominal one.
     std::optional<HeldOutComparison> held_out;

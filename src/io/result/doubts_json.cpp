@@ -54,6 +54,20 @@ Json model_errors_to_json(const std::vector<ModelErrorDoubt>& errors) {
     return json;
 }
 
+Json views_to_json(const std::vector<ViewDoubt>& views) {
+    Json json = Json::array();
+    for (const ViewDoubt& view : views) {
+        json.push_back(
+            {{"sample", view.sample},
+             {"camera", view.camera + 1},
+             {"is_no_board", view.is_no_board},
+             {"rms_px", std::isfinite(view.distance) ? Json(1e3 * view.distance) : Json()},
+             {"others_rms_px", 1e3 * view.others}});
+        if (!view.order.empty()) json.back()["order"] = view.order;
+    }
+    return json;
+}
+
 Json camera_to_json(const CameraDoubt& doubt) {
     Json json;
     if (doubt.board_factor != 1) {
@@ -65,6 +79,10 @@ Json camera_to_json(const CameraDoubt& doubt) {
         json["camera"] = doubt.camera + 1;
         json["principal_point_px"] = *doubt.principal_point;
         json["middle_px"] = doubt.middle;
+    }
+    if (doubt.focal_lengths) {
+        json["camera"] = doubt.camera + 1;
+        json["focal_lengths_px"] = *doubt.focal_lengths;
     }
     if (doubt.is_seen_from_back) json["is_seen_from_back"] = true;
     if (doubt.scatter > 0) {
@@ -140,6 +158,7 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
                             {"stated_mm", mm_per_m * distance->stated},
                             {"measured_mm", mm_per_m * distance->found}};
     }
+    if (!doubts.views.empty()) json["views"] = views_to_json(doubts.views);
     if (const auto& camera = doubts.camera) json["camera"] = camera_to_json(*camera);
     if (const auto& held_out = doubts.held_out) {
         const std::string unit = error_suffix(campaign.sensor->main_units());

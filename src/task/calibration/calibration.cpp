@@ -1,5 +1,6 @@
 #include "posewise/task/calibration.hpp"
 
+#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "calibration_options.hpp"
 #include "calibrator/robust.hpp"
 #include "core/progress_counter.hpp"
+#include "core/text.hpp"
 #include "earlier_estimate.hpp"
 #include "judgement.hpp"
 #include "moved.hpp"
@@ -158,6 +160,7 @@ void look(const Work& work, Calibration& result) {
         doubts.look = look_at_residuals(work.campaign, work.used, result.estimate);
     }
     if (!doubts.misfit && !doubts.gross_error) return;
+    if (work.campaign.sensor->has_pixels() && doubts.misfit && doubts.misfit->reading) return;
     doubts.look.shifted = find_shifted_rows(work.campaign, work.used);
     if (!doubts.look.shifted && !doubts.look.outlying) {
         doubts.look.outlying = find_gross_configurations(work.campaign, work.used, result.estimate);
@@ -174,6 +177,18 @@ Campaign with_credible_sizes(const Campaign& campaign, const Estimate& estimate)
         size = std::max(size, std::sqrt(size * learned.size));
     }
     return credible;
+}
+
+/// Of views that contradict the others a robust loss hardly takes notice; all else found by least
+/// squares follows from them.
+bool has_spoilt_views(const Calibration& result) {
+    return !result.doubts.views.empty() && result.estimate.loss.kind == LossKind::Squares;
+}
+
+std::string describe_spoilt(const std::vector<ViewDoubt>& views) {
+    return views.size() == 1
+               ? fmt::format("view {} contradicts the others", detail::quote(views.front().sample))
+               : fmt::format("{} views contradict the others", views.size());
 }
 
 /// All that `used` alone tell.
@@ -212,10 +227,14 @@ void calibrate_with(Work& work, Calibration& result) {
         find_faults(with_credible_sizes(work.campaign, result.estimate), result.estimate,
                     result.method == CalibrationMethod::Global ? ValueCheck::None
                                                                : ValueCheck::ByExpectedSizes);
-    add_doubts(work.campaign, work.used, result.estimate, result.doubts);
-    look(work, result);
-    detail::judge_data({work.campaign, work.whole.robot, work.used, registered, work.beside()},
-                       work.options, result);
+    if (has_spoilt_views(result)) {
+        result.faults.insert(result.faults.begin(), describe_spoilt(result.doubts.views));
+    } else {
+        add_doubts(work.campaign, work.used, result.estimate, result.doubts);
+        look(work, result);
+        detail::judge_data({work.campaign, work.whole.robot, work.used, registered, work.beside()},
+                           work.options, result);
+    }
     if (const auto& earlier = work.options.earlier) {
         if (!result.held.empty()) result.sigmas_beside_held = sigmas_by_name(result.estimate);
         result.estimate = detail::complete(work.whole, earlier->estimate, work.known, work.campaign,

@@ -160,12 +160,18 @@ std::optional<CameraDoubt> find_camera_doubt(const Campaign& campaign, const Mea
     CameraDoubt doubt;
     find_board_factor(campaign, *camera, measured, registered, doubt);
     check_principal_point(*camera, measured, registered.sensor, doubt);
+    for (Index c = 0; c < camera->camera_count() && !doubt.focal_lengths; ++c) {
+        const Intrinsics found = camera->placed(c, registered.sensor).intrinsics;
+        if (found.fx > 0 && found.fy > 0) continue;
+        doubt.camera = c;
+        doubt.focal_lengths = {found.fx, found.fy};
+    }
     doubt.is_seen_from_back = is_seen_from_back(campaign, *camera, measured, registered);
     if (doubt.board_factor == 1 && !doubt.is_seen_from_back) {
         check_sigma(campaign, *camera, measured, registered, doubt);
     }
-    if (doubt.board_factor == 1 && !doubt.principal_point && !doubt.is_seen_from_back &&
-        doubt.scatter == 0) {
+    if (doubt.board_factor == 1 && !doubt.principal_point && !doubt.focal_lengths &&
+        !doubt.is_seen_from_back && doubt.scatter == 0) {
         return std::nullopt;
     }
     return doubt;

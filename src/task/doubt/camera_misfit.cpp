@@ -61,6 +61,25 @@ std::optional<double> distance_of(const SingleCampaign& one) {
 
 }  // namespace
 
+bool fits_no_pose(const Campaign& campaign, const Measurements& measured,
+                  const Parameters& registered) {
+    constexpr double far = 3;
+    constexpr Index enough = 20;
+    const auto* const camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
+    if (camera == nullptr) return false;
+    std::vector<double> left;
+    for (const Index sample : evenly_spaced(measured.observations.rows(), enough)) {
+        for (Index c = 0; c < camera->camera_count(); ++c) {
+            const auto one = camera->left_by_any_pose(c, registered.sensor,
+                                                      measured.observations.row(sample).transpose(),
+                                                      measured.is_seen.row(sample));
+            if (one) left.push_back(*one / camera->camera(c).sigma);
+        }
+    }
+    std::ranges::sort(left);
+    return !left.empty() && left[left.size() / 2] > far;
+}
+
 std::optional<Misfit> find_camera_misfit(const Campaign& campaign, const Measurements& measured,
                                          const Misfit& misfit) {
     constexpr double far = 3;

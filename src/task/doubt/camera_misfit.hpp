@@ -12,4 +12,9 @@ namespace posewise::detail {
 std::optional<Misfit> find_camera_misfit(const Campaign& campaign, const Measurements& measured,
                                          const Misfit& misfit);
 
+/// Whether most views of a camera fit no pose of the board by far, as the sensor's sigma is:
+/// whatever the robot does, something is wrong with image or board.
+bool fits_no_pose(const Campaign& campaign, const Measurements& measured,
+                  const Parameters& registered);
+
 }  // namespace posewise::detail

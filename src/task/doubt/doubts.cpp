@@ -218,18 +218,27 @@ std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& e
     return faults;
 }
 
-Doubts find_doubts(const Campaign& campaign, const Measurements& measured,
+Doubts find_doubts(const Campaign& campaign, const Measurements& measurements,
                    const Parameters& registered, const Metrics& nominal) {
     Doubts doubts;
-    // One of several cameras that is at fault would pass for a board of another size.
-    const bool has_rig = camera_count(*campaign.sensor) > 1;
-    if (has_rig) doubts.misfit = find_misfit(campaign, measured, registered);
-    const bool is_rig_wrong =
-        doubts.misfit && (doubts.misfit->camera || doubts.misfit->is_between_cameras);
-    if (!is_rig_wrong) doubts.camera = find_camera_doubt(campaign, measured, registered);
+    if (campaign.sensor->has_pixels()) {
+        doubts.misfit = find_misfit(campaign, measurements, registered);
+        const auto& misfit = doubts.misfit;
+        // All else follows from it.
+        if (misfit && (misfit->reading || misfit->camera || misfit->is_between_cameras)) {
+            return doubts;
+        }
+    }
+    doubts.views = find_view_doubts(campaign, measurements, registered);
+    std::vector<std::string> views;
+    for (const ViewDoubt& view : doubts.views) {
+        if (std::ranges::find(views, view.sample) == views.end()) views.push_back(view.sample);
+    }
+    const Measurements measured = leave_out(measurements, views);
+    doubts.camera = find_camera_doubt(campaign, measured, registered);
     if (doubts.camera && doubts.camera->board_factor != 1) {
         doubts.misfit.reset();
-    } else if (!has_rig) {
+    } else if (!campaign.sensor->has_pixels()) {
         doubts.misfit = find_misfit(campaign, measured, registered);
     }
     if (!doubts.misfit) {

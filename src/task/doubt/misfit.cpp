@@ -64,7 +64,8 @@ std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& 
     // Corners by the hundred take long to try, and wrong ones miss by far.
     const double doubtful = has_pixels ? detail::credible_errors : doubtful_errors;
     if (misfit.distance <= doubtful * misfit.expected &&
-        !are_orientations_off(campaign, residuals)) {
+        !are_orientations_off(campaign, residuals) &&
+        !detail::fits_no_pose(campaign, measured, registered)) {
         return std::nullopt;
     }
     if (auto of_cameras = detail::find_camera_misfit(campaign, measured, misfit)) {
@@ -124,6 +125,7 @@ std::string describe_misfit(const Campaign& campaign, const Misfit& misfit) {
             detail::format_short(1e3 * misfit.distance, 3),
             detail::format_short(1e3 * misfit.others, 3));
     }
+    if (campaign.sensor->has_pixels() && misfit.reading) return describe(*misfit.reading);
     return fmt::format(
         "are these of another robot? The nominal robot misses half of them by over {} {}; must be "
         "about {} {}, as the spread of {} says{}{}{}",
