@@ -166,7 +166,6 @@ ViewDoubt doubt_of(const Campaign& campaign, const CameraSensor& camera,
     const double others = median_of(views, &View::by_the_joints);
     doubt.distance = 1e-3 * (doubt.is_no_board ? view.by_any_pose : view.by_the_joints);
     doubt.others = 1e-3 * (doubt.is_no_board ? any : others);
-    if (!std::isfinite(doubt.distance)) return doubt;
     const VectorXd predicted = predict(campaign, at, measured, view);
     const std::vector<CornerOrder> orders = doubt.is_no_board
                                                 ? exchanged_pair(camera, predicted, measured, view)
