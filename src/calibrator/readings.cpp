@@ -11,6 +11,7 @@
 #include "length_units.hpp"
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/calibrator/identification.hpp"
+#include "posewise/core/errors.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -138,7 +139,12 @@ FittedReadings fit_readings(const Campaign& campaign, const Measurements& measur
     const Measurements thinned =
         with_few_corners(*campaign.sensor, thin_out(measurements, most_configurations));
     // What is wrong with the measurements themselves is said once, of the robot as stated.
-    FittedReadings fitted{{}, register_roughly(campaign, thinned).undetermined};
+    FittedReadings fitted;
+    try {
+        fitted.undetermined = register_roughly(campaign, thinned).undetermined;
+    } catch (const InputError& error) {  // few corners of few views may link no two cameras
+        fitted.undetermined = error.what();
+    }
     if (!fitted.undetermined.empty()) return fitted;
     std::vector<FittedReading>& readings = fitted.readings;
     for (ReadingChanges& changes :

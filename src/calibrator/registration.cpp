@@ -139,16 +139,13 @@ Start solve_linear(const Campaign& campaign, const ObservedPoints& observed,
     Measurements points = as_points(means, observed);
     const Seen is_told = points.is_seen;
     std::vector<Index> views;
-    if (campaign.sensor->has_pixels()) {
-        const Index told = points.is_seen.rowwise().any().count();
-        const Index shown = views_with_enough(*campaign.sensor, means.is_seen);
-        if (2 * told < shown) return {{campaign.nominal, describe_strange_views(told, shown)}};
-        // Of several cameras each may be the one that is at fault, in whatever views it has.
-        if (camera_count(*campaign.sensor) == 1) {
-            views = find_views(campaign, observed, points);
-            means = take(means, views);
-            points = take(points, views);
-        }
+    // Of several cameras each may be the one that is at fault, in whatever views it has; few
+    // corners that are not exactly where they are stated tell poses too badly to be compared.
+    if (campaign.sensor->has_pixels() && camera_count(*campaign.sensor) == 1 &&
+        campaign.sensor->unknown_sizes().size() == 0) {
+        views = find_views(campaign, observed, points);
+        means = take(means, views);
+        points = take(points, views);
     }
     const auto equations = state_equations(campaign, observed.points, points);
     if (equations.A.rows() < equations.A.cols()) {

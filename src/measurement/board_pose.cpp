@@ -62,10 +62,11 @@ class Bundle {
     const Intrinsics& intrinsics() const { return intrinsics_; }
     const std::vector<Isometry3d>& poses() const { return poses_; }
     double squares() const { return squares_; }
-    /// Of what is left in one view, px.
+    /// Of what is left in one view by the degrees of freedom that its pose leaves, px.
     double rms(std::size_t view) const {
+        const auto freedom = 2 * std::ssize(views_[view].corners) - 6;
         return std::sqrt(squares_in(lens_of(intrinsics_), views_[view], poses_[view]) /
-                         static_cast<double>(2 * views_[view].corners.size())) /
+                         static_cast<double>(std::max<Index>(1, freedom))) /
                kpx_per_px;
     }
 
@@ -159,7 +160,7 @@ bool is_of_a_board(const BoardView& view, double rms) {
     return spread[1] > thin * spread[0] && rms <= far * spread.norm();
 }
 
-/// What the best homography to the image leaves of u and v, px.
+/// What the best homography to the image leaves of u and v by the degrees of freedom left, px.
 double left_by_homography(const BoardView& view, const Isometry3d& plane) {
     const std::vector<Vector2d> places = in_plane(view.corners, plane);
     const Matrix3d H = homography(places, view.pixels);
@@ -278,7 +279,7 @@ std::vector<BoardView> keep_plane_views(const std::vector<BoardView>& views) {
 }
 
 std::optional<BoardFit> find_board(const BoardView& view, const Intrinsics& intrinsics) {
-    if (!shows_enough(view) || !is_of_a_board(view, 0)) return std::nullopt;
+    if (!shows_enough(view)) return std::nullopt;
     std::vector<Vector2d> directions;
     for (const Vector2d& pixel : view.pixels) {
         const auto direction = undistort(intrinsics, pixel);
@@ -293,9 +294,9 @@ std::optional<BoardFit> find_board(const BoardView& view, const Intrinsics& intr
         bundle.polish();
         if (!(bundle.squares() < least)) continue;
         least = bundle.squares();
-        best = {bundle.poses().front(), bundle.rms(0)};
+        best = {bundle.poses().front(), bundle.rms(0), false};
     }
-    if (best && !is_of_a_board(view, best->rms)) return std::nullopt;
+    if (best) best->is_good = is_of_a_board(view, best->rms);
     return best;
 }
 

@@ -18,12 +18,14 @@ bool shows_enough(const BoardView& view);
 
 struct BoardFit {
     Isometry3d board;  ///< in the camera's frame
-    double rms = 0;    ///< of what is left of u and v, px
+    double rms = 0;    ///< of what is left of u and v, by the degrees of freedom left, px
+    /// Whether that may be a view of the board: not if corners are at one place or on one line in
+    /// the image, or more than a quarter of their spread is left over.
+    bool is_good = false;
 };
 
 /// The board by least squares of the pixels, from whichever of board_starts() ends best. Nothing if
-/// too little of it is seen, or no pose of it is seen so: corners at one place or on one line in
-/// the image, or more than a quarter of their spread left over.
+/// too little of it is seen.
 std::optional<BoardFit> find_board(const BoardView& view, const Intrinsics& intrinsics);
 
 /// Beyond which a view is not of this board, where the others leave so much over, px.

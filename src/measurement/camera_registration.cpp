@@ -54,6 +54,42 @@ Isometry3d middle_of(const std::vector<Isometry3d>& poses) {
     return middle;
 }
 
+/// Where `shown` views show enough of the board and only `told` of them a pose of it.
+std::string describe_strange_views(Index told, Index shown) {
+    return fmt::format(
+        "the corners of {} of {} fit no view of such a board from anywhere; are columns and rows "
+        "of the board, the corners' numbers and the columns u and v right?",
+        shown - told, detail::count_of(shown, "view"));
+}
+
+/// What poses of the board may leave of a camera's views before they are taken for views of
+/// something else, px. No limit where most leave too much anyway, or where its corners are not
+/// exactly where they are stated: few of them often find no good pose, and still tell where to
+/// begin. Throws InputError if hardly a view finds any.
+double most_left_over(const CameraSensor& sensor, Index camera, const Intrinsics& intrinsics,
+                      const Measurements& means) {
+    if (sensor.unknown_sizes().size() > 0) return INFINITY;
+    constexpr Index enough = 40;
+    std::vector<double> left_over;
+    Index shown = 0;
+    for (const Index i : evenly_spaced(means.configuration_count(), enough)) {
+        const auto view =
+            view_of(sensor, camera, means.observations.row(i).transpose(), means.is_seen.row(i));
+        if (!detail::shows_enough(view)) continue;
+        ++shown;
+        const auto fit = detail::find_board(view, intrinsics);
+        if (fit && fit->is_good) left_over.push_back(fit->rms);
+    }
+    const Index good = std::ssize(left_over);
+    if (10 * good < shown) throw InputError(describe_strange_views(good, shown));
+    return 2 * good < shown ? INFINITY : detail::most_left_over(left_over);
+}
+
+/// Whether a view that leaves at most so much is to begin with.
+bool is_taken(const std::optional<detail::BoardFit>& fit, double most_left) {
+    return fit && (std::isinf(most_left) || (fit->is_good && fit->rms <= most_left));
+}
+
 /// The board in each camera's frame, in each view of a part of them that is enough; nothing where
 /// it does not show it.
 std::vector<std::vector<std::optional<Isometry3d>>> boards_of(
@@ -78,19 +114,6 @@ std::vector<std::vector<std::optional<Isometry3d>>> boards_of(
         ++found;
     }
     return boards;
-}
-
-/// By which a camera's views of this board are told from those of something else, px.
-double most_left_over(const CameraSensor& sensor, Index camera, const Intrinsics& intrinsics,
-                      const Measurements& means) {
-    constexpr Index enough = 40;
-    std::vector<double> left_over;
-    for (const Index i : evenly_spaced(means.configuration_count(), enough)) {
-        const auto view =
-            view_of(sensor, camera, means.observations.row(i).transpose(), means.is_seen.row(i));
-        if (const auto fit = detail::find_board(view, intrinsics)) left_over.push_back(fit->rms);
-    }
-    return detail::most_left_over(left_over);
 }
 
 /// Where further cameras are in the first one's frame, by views of the board that they share.
@@ -132,29 +155,7 @@ std::optional<double> CameraSensor::left_by_any_pose(Index camera, const VectorX
     const detail::BoardView view = view_of(*this, camera, observation, is_seen);
     if (!detail::shows_enough(view)) return std::nullopt;
     const auto fit = detail::find_board(view, placed(camera, unknowns).intrinsics);
-    return fit ? fit->rms : std::numeric_limits<double>::infinity();
-}
-
-std::string describe_strange_views(Index told, Index shown) {
-    return fmt::format(
-        "the corners of {} of {} fit no view of such a board from anywhere; are columns and rows "
-        "of the board, the corners' numbers and the columns u and v right?",
-        shown - told, detail::count_of(shown, "view"));
-}
-
-Index views_with_enough(const Sensor& sensor, const Seen& is_seen) {
-    const auto* const camera = dynamic_cast<const CameraSensor*>(&sensor);
-    if (camera == nullptr) return 0;
-    Index count = 0;
-    for (Index i = 0; i < is_seen.rows(); ++i) {
-        bool is_enough = false;
-        for (Index c = 0; c < camera->camera_count() && !is_enough; ++c) {
-            is_enough = detail::shows_enough(
-                view_of(*camera, c, VectorXd::Zero(camera->row_count()), is_seen.row(i)));
-        }
-        count += is_enough ? 1 : 0;
-    }
-    return count;
+    return fit && fit->is_good ? fit->rms : std::numeric_limits<double>::infinity();
 }
 
 ObservedPoints CameraSensor::points_with(const std::vector<PlacedCamera>& cameras,
@@ -170,7 +171,7 @@ ObservedPoints CameraSensor::points_with(const std::vector<PlacedCamera>& camera
                                  [](const auto& one) { return one.second.corners.size(); });
         for (const auto& [c, view] : views) {
             const auto fit = detail::find_board(view, cameras[c].intrinsics);
-            if (!fit || fit->rms > most_left[c]) continue;
+            if (!is_taken(fit, most_left[c])) continue;
             const Isometry3d in_first = cameras[c].in_first * fit->board;
             const Isometry3d place = setup_.is_on_flange ? in_first.inverse() : in_first;
             return VectorXd(detail::points_of(place).reshaped());
@@ -204,7 +205,7 @@ std::optional<ObservedPoints> CameraSensor::observed_points(const Measurements& 
             if (detail::shows_enough(view)) views.push_back(std::move(view));
         }
         const Index shown = std::ssize(views);
-        views = detail::keep_plane_views(views);
+        if (unknown_sizes().size() == 0) views = detail::keep_plane_views(views);
         const auto found = detail::find_intrinsics(views, one.intrinsics, one.is_known, one.image);
         const bool is_stated = one.intrinsics.fx > 0 && one.intrinsics.fy > 0;
         if (!found && 2 * std::ssize(views) < shown) {
@@ -220,12 +221,12 @@ std::optional<ObservedPoints> CameraSensor::observed_points(const Measurements& 
         }
         if (found) cameras.back().intrinsics = *found;
     }
-    place_cameras(*this, means, cameras);
     std::vector<double> most_left;
     for (Index c = 0; c < camera_count(); ++c) {
         most_left.push_back(
             most_left_over(*this, c, cameras[static_cast<std::size_t>(c)].intrinsics, means));
     }
+    place_cameras(*this, means, cameras);
     return points_with(cameras, most_left);
 }
 

@@ -229,10 +229,6 @@ class CameraSensor final : public Sensor {
 
 /// Number of the first target in files that list corners, CameraSetup::first_corner.
 Index first_corner(const Sensor& sensor);
-/// How many samples show, in one camera's image, four corners or more that are not in one line.
-Index views_with_enough(const Sensor& sensor, const Seen& is_seen);
-/// Where `shown` views show enough of the board and only `told` of them a pose of it.
-std::string describe_strange_views(Index told, Index shown);
 /// How many cameras a sensor has: 1 if it is none.
 Index camera_count(const Sensor& sensor);
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/statistics.hpp"
+#include "measurement/board_starts.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/camera_sensor.hpp"
@@ -66,7 +67,10 @@ bool fits_no_pose(const Campaign& campaign, const Measurements& measured,
     constexpr double far = 3;
     constexpr Index enough = 20;
     const auto* const camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
-    if (camera == nullptr) return false;
+    if (camera == nullptr || !detail::plane_of(camera->setup().corners) ||
+        camera->unknown_sizes().size() > 0) {
+        return false;
+    }
     std::vector<double> left;
     for (const Index sample : evenly_spaced(measured.observations.rows(), enough)) {
         for (Index c = 0; c < camera->camera_count(); ++c) {

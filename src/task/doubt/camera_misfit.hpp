@@ -13,7 +13,8 @@ std::optional<Misfit> find_camera_misfit(const Campaign& campaign, const Measure
                                          const Misfit& misfit);
 
 /// Whether most views of a camera fit no pose of the board by far, as the sensor's sigma is:
-/// whatever the robot does, something is wrong with image or board.
+/// whatever the robot does, something is wrong with image or board. Only of a plane board that is
+/// exactly known: few markers of a body often find no pose.
 bool fits_no_pose(const Campaign& campaign, const Measurements& measured,
                   const Parameters& registered);
 
