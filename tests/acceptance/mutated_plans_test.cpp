@@ -201,6 +201,7 @@ class MutatedPlans : public ::testing::Test {
                     "/search/seed",
                     "/problem/time_limit_s",
                     "/visiting_time_s",
+                    "/duration_s",  // a statement about the cell's times, as that is
                     "/bounds/pool/is_proven",
                     "/bounds/continuous/is_proven",
                 }};
