@@ -39,7 +39,7 @@ ShownPoses poses_to_judge(const Campaign& campaign) {
     // Weak columns are hardly told from none by fewer.
     constexpr Index usual = 400;
     const Index count = std::min(2 * L, std::max(2 * (L - sensor.unknown_sizes().size()), usual));
-    if (campaign.sensor->has_view()) {
+    if (sensor.has_view()) {
         return viewed_poses(campaign, nominal, count, configuration_seed);
     }
     auto touching = touching_poses(campaign, nominal, count, configuration_seed);

@@ -68,7 +68,7 @@ std::string describe_strange_views(Index told, Index shown) {
 /// begin. Throws InputError if hardly a view finds any.
 double most_left_over(const CameraSensor& sensor, Index camera, const Intrinsics& intrinsics,
                       const Measurements& means) {
-    if (sensor.unknown_sizes().size() > 0) return INFINITY;
+    if (!sensor.has_exact_corners()) return INFINITY;
     constexpr Index enough = 40;
     std::vector<double> left_over;
     Index shown = 0;
@@ -205,7 +205,7 @@ std::optional<ObservedPoints> CameraSensor::observed_points(const Measurements& 
             if (detail::shows_enough(view)) views.push_back(std::move(view));
         }
         const Index shown = std::ssize(views);
-        if (unknown_sizes().size() == 0) views = detail::keep_plane_views(views);
+        if (has_exact_corners()) views = detail::keep_plane_views(views);
         const auto found = detail::find_intrinsics(views, one.intrinsics, one.is_known, one.image);
         const bool is_stated = one.intrinsics.fx > 0 && one.intrinsics.fy > 0;
         if (!found && 2 * std::ssize(views) < shown) {

@@ -122,13 +122,10 @@ Measurements put_together(const std::vector<Measurements>& parts) {
         rows.conservativeResize(rows.rows() + more.rows(), more.cols());
         rows.bottomRows(more.rows()) = more;
     };
-    const auto lacks = [&](const auto& is_there) {
-        return !std::all_of(parts.begin(), parts.end(), is_there);
-    };
-    const bool has_names =
-        !lacks([](const Measurements& part) { return !part.sample_names.empty(); });
-    const bool has_angles =
-        !lacks([](const Measurements& part) { return part.roll_pitch_yaw.rows() > 0; });
+    const bool has_names = std::ranges::all_of(
+        parts, [](const Measurements& part) { return !part.sample_names.empty(); });
+    const bool has_angles = std::ranges::all_of(
+        parts, [](const Measurements& part) { return part.roll_pitch_yaw.rows() > 0; });
     for (const Measurements& part : parts) {
         append(all.configurations, part.configurations);
         append(all.observations, part.observations);

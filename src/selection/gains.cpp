@@ -61,7 +61,7 @@ Gains::Gains(const Blocks& candidates, const Shortlist& shortlist)
       gains_(asked_.size()),
       rough_gains_(static_cast<std::size_t>(shortlist.rough.groups)) {}
 
-void Gains::find_sensitivities() {
+void Gains::follow_grams() {
     const auto count = static_cast<Index>(shortlist_.members.size());
     if (shortlist_.lanes.rows > 0) {
         const Index size = shortlist_.lanes.rows * (shortlist_.lanes.rows + 1) / 2;
@@ -94,7 +94,7 @@ void Gains::move_to(const MatrixXd& M, const MatrixXd& C_root) {
         G_ = make_grams(shortlist_.lanes, L_inverse.transpose());
         if (!is_determinant()) H_ = make_grams(shortlist_.lanes, root.transpose());
     }
-    find_sensitivities();
+    follow_grams();
 }
 
 void Gains::exchange(const Eigen::Ref<const RowMatrixXd>& added, const MatrixXd& M) {
@@ -116,7 +116,7 @@ void Gains::exchange(const Eigen::Ref<const RowMatrixXd>& added, const MatrixXd&
     }
     inverse_ += product_of_columns({P_, T}, {P_, -T});
     update_grams(shortlist_.lanes, std::array<GramUpdate, 2>{{{P_, Q_, 1}, {T, S, -1}}}, G_, H_);
-    find_sensitivities();
+    follow_grams();
 }
 
 bool Gains::remove(const Eigen::Ref<const RowMatrixXd>& block) {

@@ -63,7 +63,8 @@ class Gains {
 
   private:
     bool is_determinant() const { return C_root_.size() == 0; }
-    void find_sensitivities();
+    /// What follows from the grams: sensitivities, and the grams in single precision.
+    void follow_grams();
     Largest largest_of(const std::vector<Index>& positions, const VectorXd& gains) const;
     MatrixXd apply_W(const MatrixXd& X) const;
     /// WK: [W, W C W], each with zero columns up to whole_columns(); W alone for determinants.

@@ -208,6 +208,10 @@ class CameraSensor final : public Sensor {
     /// Unknown intrinsic parameters are first found from the views [Zhang 2000].
     std::optional<ObservedPoints> observed_points(const Measurements& means) const override;
 
+    /// Whether the board's corners are exactly where they are stated. Views are compared with each
+    /// other only then: few corners that are not often find no good pose of the board.
+    bool has_exact_corners() const { return unknown_sizes().size() == 0; }
+
   private:
     bool has_unknown_place() const { return !setup_.known_place; }
     /// `most_left`: of each camera, what a view of the board may leave over, px.

@@ -60,7 +60,7 @@ Measurements mean_measurements(const Sensor& sensor, const Measurements& measure
 /// The measurements of the listed configurations, in that order.
 Measurements take(const Measurements& measurements, const std::vector<Index>& configurations);
 
-/// Of several campaigns of the same columns one after another. Their ids must differ.
+/// Joins campaigns that have the same columns, one after another. Their ids must differ.
 Measurements put_together(const std::vector<Measurements>& parts);
 
 /// Indices from 0 to count - 1 without those listed.

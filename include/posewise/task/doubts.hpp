@@ -333,8 +333,8 @@ struct ViewDoubt {
     /// If they fit where the joints say once they are numbered so: "in mirrored order".
     std::string order;
 };
-/// Of corners in images, if it is fewer than half of the views; `registered` is as for
-/// find_misfit().
+/// Finds them where fewer than half of the views are such, of a camera with exact corners;
+/// `registered` is as for find_misfit().
 std::vector<ViewDoubt> find_view_doubts(const Campaign& campaign, const Measurements& measurements,
                                         const Parameters& registered);
 

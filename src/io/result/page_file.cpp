@@ -343,10 +343,6 @@ std::string make_page(const std::vector<PagePart>& parts, const std::vector<std:
     return fill_template(detail::page_template(), escape_for_script(text));
 }
 
-}  // namespace
-
-namespace {
-
 std::vector<PageImage> page_images(const Sensor& sensor, const Measurements& measurements,
                                    const std::vector<ReadingResidual>& readings) {
     std::vector<PageImage> images;

@@ -68,7 +68,7 @@ bool fits_no_pose(const Campaign& campaign, const Measurements& measured,
     constexpr Index enough = 20;
     const auto* const camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
     if (camera == nullptr || !detail::plane_of(camera->setup().corners) ||
-        camera->unknown_sizes().size() > 0) {
+        !camera->has_exact_corners()) {
         return false;
     }
     std::vector<double> left;

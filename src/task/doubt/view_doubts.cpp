@@ -197,7 +197,7 @@ Parameters fit_robustly(const Campaign& campaign, const Measurements& measured,
 std::vector<ViewDoubt> find_view_doubts(const Campaign& campaign, const Measurements& measured,
                                         const Parameters& registered) {
     const auto* const camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
-    if (camera == nullptr || camera->unknown_sizes().size() > 0) return {};
+    if (camera == nullptr || !camera->has_exact_corners()) return {};
     std::vector<View> views = find_views(*camera, measured, registered);
     constexpr std::size_t enough = 6;
     if (views.size() < enough) return {};

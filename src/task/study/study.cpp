@@ -217,8 +217,7 @@ Prepared prepare(Index least, const RobotModel& model, const Measurements& measu
     if (split_count == 0 && options.holdout) {
         throw InputError(
             "`holdout` is of splits, and none are made unless `splits` asks for them, since no "
-            "pose "
-            "count is up to a third of the configurations to choose from; must be left out");
+            "pose count is up to a third of the configurations to choose from; must be left out");
     }
     if (split_count > 0 && all < 2) {
         throw InputError("there is 1 configuration, splits need at least 2");
