@@ -66,17 +66,18 @@ class Study(Result):
             ax.legend()
             return ax
         random = table.drop_duplicates("poses")
-        if "random_held_out_rms_p50_mm" in table:
+        unit = self.document["unit"]
+        if f"random_held_out_rms_p50_{unit}" in table:
             low, high = (
-                random[f"random_held_out_rms_{q}_mm"].astype(float) for q in ("p10", "p90")
+                random[f"random_held_out_rms_{q}_{unit}"].astype(float) for q in ("p10", "p90")
             )
             ax.fill_between(random["poses"], low, high, alpha=0.2, label="random, 10 to 90 %")
-            ax.plot(random["poses"], random["random_held_out_rms_p50_mm"], label="random, median")
+            ax.plot(random["poses"], random[f"random_held_out_rms_p50_{unit}"], label="random, median")
         if "criterion" in table:
             for criterion, rows in table.groupby("criterion"):
-                ax.plot(rows["poses"], rows["held_out_rms_mm"], "o-", label=f"by {criterion}")
+                ax.plot(rows["poses"], rows[f"held_out_rms_{unit}"], "o-", label=f"by {criterion}")
         ax.set_xlabel("poses")
-        ax.set_ylabel("RMS distance held out / mm")
+        ax.set_ylabel(f"RMS distance held out / {unit}")
         ax.set_yscale("log")
         ax.legend()
         return ax

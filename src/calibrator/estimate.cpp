@@ -118,10 +118,11 @@ Metrics make_metrics(const RowMatrixXd& residuals, Index length_count) {
         metrics.coordinate_max[i] = points.col(axis).cwiseAbs().maxCoeff();
     }
     if (metrics.has_orientation) {
-        const VectorXd angles =
-            residuals.rightCols(residuals.cols() - length_count).rowwise().norm();
+        VectorXd angles = residuals.rightCols(residuals.cols() - length_count).rowwise().norm();
+        std::sort(angles.begin(), angles.end());
         metrics.orientation_rms = angles.norm() / std::sqrt(count);
-        metrics.orientation_max = angles.maxCoeff();
+        metrics.orientation_max = angles[metrics.point_count - 1];
+        metrics.orientation_p95 = quantile(angles, 0.95, detail::QuantileRule::Lower);
     }
     return metrics;
 }

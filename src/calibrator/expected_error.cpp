@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -53,7 +54,9 @@ std::vector<PointError> point_errors(const Campaign& campaign, const Estimate& e
                 spread.middleRows(row, count) * seen.middleRows(row, count).transpose();
             const MatrixXd of_noise = noise.block(row, row, count, count);
             const MatrixXd left_over = all.block(row, row, count, count) - of_noise;
-            PointError point{parameters.trace(), left_over.trace(), of_noise.trace(), 1};
+            // What is fitted away altogether may be below 0 by rounding.
+            PointError point{std::max(parameters.trace(), 0.0), left_over.trace(), of_noise.trace(),
+                             1};
             const double squares = (parameters + left_over + of_noise).squaredNorm();
             if (squares > 0) point.degrees_of_freedom = point.total() * point.total() / squares;
             points.push_back(point);

@@ -28,15 +28,15 @@ std::string study_output(const std::string& image_path, std::size_t columns, std
                           is_one ? 600 : 130 + 280 * static_cast<double>(rows));
 }
 
-/// Range of the error axis in mm.
+/// Range of the error axis, in the unit of errors.
 struct ErrorAxis {
     double lower = std::numeric_limits<double>::infinity();
     double upper = 0;
 
-    void include(const std::optional<double>& metres) {
-        if (!metres) return;
-        lower = std::min(lower, mm_per_m * *metres / 1.5);
-        upper = std::max(upper, mm_per_m * *metres * 1.5);
+    void include(const std::optional<double>& error) {
+        if (!error) return;
+        lower = std::min(lower, 1e3 * *error / 1.5);
+        upper = std::max(upper, 1e3 * *error * 1.5);
     }
     bool is_empty() const { return !(upper > 0) || !(lower > 0); }
     /// Places for labels: 1, 2 and 5 of each decade.
@@ -65,8 +65,8 @@ std::string count_axis(const std::vector<StudyRow>& rows) {
     return fmt::format("set xrange [{}:{}]\n", least->pose_count - 1, least->pose_count + 1);
 }
 
-std::string format_plotted(const std::optional<double>& metres, const std::string& if_absent) {
-    return metres ? format_short(mm_per_m * *metres, 9) : if_absent;
+std::string format_plotted(const std::optional<double>& error, const std::string& if_absent) {
+    return error ? format_short(1e3 * *error, 9) : if_absent;
 }
 
 ErrorAxis find_error_axis(const std::vector<Study>& studies) {
@@ -159,15 +159,18 @@ void draw(const Study& study, std::size_t number, const ErrorAxis& axis, Drawing
     }
 }
 
-constexpr const char* axis_labels =
-    "set xlabel 'poses used for calibration'\nset ylabel 'held-out distance RMS (mm)'\n";
+std::string axis_labels(const Study& study) {
+    return fmt::format(
+        "set xlabel 'poses used for calibration'\nset ylabel 'held-out {}RMS ({})'\n",
+        study.units == &length_units ? "distance " : "", study.units->error);
+}
 
 std::string one_panel(const std::vector<Study>& studies, const ErrorAxis& axis) {
     Drawing drawing;
     for (std::size_t i = 0; i < studies.size(); ++i) draw(studies[i], i, axis, drawing);
     return fmt::format("set title {} noenhanced\n{}set key below\n{}{}\n",
-                       gnuplot_text(studies.front().campaign), axis_labels, drawing.data,
-                       drawing.clauses);
+                       gnuplot_text(studies.front().campaign), axis_labels(studies.front()),
+                       drawing.data, drawing.clauses);
 }
 
 /// A panel a study, with the same axes and one legend.
@@ -191,7 +194,8 @@ std::string panels(const std::vector<Study>& studies, const ErrorAxis& axis, std
         script += fmt::format(
             "set title {} noenhanced\nset xlabel '{}'\nset ylabel '{}'\n{}{}\nunset key\n",
             gnuplot_text(studies[i].model), is_lowest ? "poses used for calibration" : "",
-            is_left ? "held-out RMS (mm)" : "", drawing.data, drawing.clauses);
+            is_left ? fmt::format("held-out RMS ({})", studies[i].units->error) : "", drawing.data,
+            drawing.clauses);
     }
     return script + "unset multiplot\n";
 }

@@ -64,10 +64,10 @@ std::string sum_up(const Study& study, const Curve& curve) {
     const auto expected = median_expected(planned_cases(*curve.rows[k], 0, study.criteria.size()));
     std::string text = fmt::format(
         "{} chosen by {} leave {} RMS {}", count_of(curve.points[k].pose_count, "pose"),
-        criterion_name(study.criteria.front()), format_error(curve.points[k].error, false),
+        criterion_name(study.criteria.front()), format_error(curve.points[k].error, *study.units),
         study.is_simulated ? "over the workspace" : "at poses held out");
-    if (expected) text += fmt::format(", {} expected", format_error(*expected, false));
-    if (random) text += fmt::format(", random ones {}", format_error(*random, false));
+    if (expected) text += fmt::format(", {} expected", format_error(*expected, *study.units));
+    if (random) text += fmt::format(", random ones {}", format_error(*random, *study.units));
     return text +
            (k + 1 == curve.points.size() ? "; more were not tried"
                                          : "; the fewest within 10 % of the best") +

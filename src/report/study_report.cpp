@@ -31,9 +31,8 @@ std::string csv_line(const StudyRow& row, const StudyCase& study_case, std::stri
     if (study_case.identified && study_case.held_out.point_count > 0) {
         const HeldOut& held_out = study_case.held_out;
         found.clear();
-        for (const double metres : {held_out.distance_rms, held_out.distance_max,
-                                    held_out.distance_p95, study_case.expected}) {
-            found += (found.empty() ? "" : ",") + detail::format_short(mm_per_m * metres, 9);
+        for (const double error : {held_out.rms, held_out.max, held_out.p95, study_case.expected}) {
+            found += (found.empty() ? "" : ",") + detail::format_short(1e3 * error, 9);
         }
     }
     std::string poses;
@@ -132,9 +131,12 @@ void write_csv_lines(const Study& study, const std::string& prefix, const WriteT
     write(lines);
 }
 
-constexpr const char* csv_header =
-    "poses,chosen_by,subset,identified,held_out_rms_mm,held_out_max_mm,held_out_p95_mm,"
-    "expected_rms_mm,configurations\n";
+std::string csv_header(const Study& study) {
+    return fmt::format(
+        "poses,chosen_by,subset,identified,held_out_rms_{0},held_out_max_{0},held_out_p95_{0},"
+        "expected_rms_{0},configurations\n",
+        study.units->error);
+}
 
 }  // namespace
 
@@ -195,13 +197,13 @@ std::string describe_few_judged(const Study& study) {
 }
 
 void write_study_csv(const Study& study, const WriteText& write) {
-    write(csv_header);
+    write(csv_header(study));
     write_csv_lines(study, "", write);
 }
 
 void write_study_csv(const std::vector<Study>& studies, const WriteText& write) {
     write(studies.front().is_simulated ? "variation," : "model,");
-    write(csv_header);
+    write(csv_header(studies.front()));
     for (const Study& study : studies) write_csv_lines(study, quote(study.model) + ',', write);
 }
 

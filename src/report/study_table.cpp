@@ -7,7 +7,10 @@
 namespace posewise::detail {
 namespace {
 
-std::string cell(const std::optional<double>& metres) { return metres ? format_mm(*metres) : "-"; }
+/// All units of errors are a thousandth of those of the library.
+std::string cell(const std::optional<double>& error) { return error ? format_mm(*error) : "-"; }
+
+std::string unit_of(const Study& study) { return '/' + std::string(study.units->error); }
 
 std::string unidentified_cell(const StudyCases& cases) {
     return cases.empty() ? "-" : std::to_string(count_unidentified(cases));
@@ -60,15 +63,16 @@ Table study_table(const Study& study) {
     Table table;
     table.header = {"poses"};
     for (const Criterion criterion : study.criteria) {
-        table.header.push_back(std::string(criterion_name(criterion)) + "/mm");
+        table.header.push_back(std::string(criterion_name(criterion)) + unit_of(study));
         if (study.splits == 0) continue;
         table.header.emplace_back("expected");
         table.header.push_back(std::string(criterion_name(criterion)) + "/random");
         table.header.emplace_back("95 %");
     }
-    for (const char* name : {"random 10 %/mm", "50 %/mm", "90 %/mm", "subsets", "unidentified"}) {
-        table.header.emplace_back(name);
+    for (const char* name : {"random 10 %", "50 %", "90 %"}) {
+        table.header.push_back(name + unit_of(study));
     }
+    table.header.insert(table.header.end(), {"subsets", "unidentified"});
     if (is_partial(study)) table.header.emplace_back("splits");
     for (const StudyRow& row : study.rows) {
         std::vector<std::string> cells{std::to_string(row.pose_count)};
@@ -91,10 +95,10 @@ Table study_table(const Study& study) {
 Table models_table(const std::vector<Study>& studies) {
     const Study& first = studies.front();
     Table table;
-    table.header = {"poses", first.is_simulated ? "variation" : "model", "random/mm"};
+    table.header = {"poses", first.is_simulated ? "variation" : "model", "random" + unit_of(first)};
     for (const Criterion criterion : first.criteria) {
         const std::string name(criterion_name(criterion));
-        table.header.push_back(name + "/mm");
+        table.header.push_back(name + unit_of(first));
         if (first.splits == 0) continue;
         table.header.insert(table.header.end(),
                             {name + "/random", "95 %",

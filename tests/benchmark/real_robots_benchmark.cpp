@@ -90,9 +90,9 @@ void run(int argc, char** argv) {
         std::vector<double> found, expected, ratios, held;
         for (const StudyCase& one : row.optimal) {
             if (!one.identified) continue;
-            found.push_back(one.held_out.distance_rms);
+            found.push_back(one.held_out.rms);
             expected.push_back(one.expected);
-            ratios.push_back(one.expected / one.held_out.distance_rms);
+            ratios.push_back(one.expected / one.held_out.rms);
             const auto test =
                 RandomStream(options.seed.value(), static_cast<std::uint64_t>(one.split))
                     .subset(all, result.test_count);

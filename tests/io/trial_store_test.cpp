@@ -56,6 +56,22 @@ TEST(TrialStore, GivesBackEveryBit) {
     expect_same(finished(read_trial_store(path), simulated_series()), trials);
 }
 
+TEST(TrialStore, GivesBackTheUnitOfErrors) {
+    const TemporaryFolder folder;
+    const std::string path = folder.path("a.sqlite");
+    TrialSeries series = measured_series();
+    series.units = &pixel_units;
+    {
+        const TrialStore store = open_trial_store(path);
+        store.keep(series, {0, {1, 2}});
+        store.keep(measured_series(), {0, {3}});
+    }
+    const std::vector<TrialSeries> kept = series_in_store(path);
+    ASSERT_EQ(kept.size(), 2U);
+    EXPECT_EQ(kept[0].units, &pixel_units);
+    EXPECT_EQ(kept[1].units, &length_units);
+}
+
 TEST(TrialStore, HoldsSeveralSeries) {
     const TemporaryFolder folder;
     const std::string path = folder.path("a.sqlite");

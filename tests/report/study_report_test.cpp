@@ -19,9 +19,9 @@ StudyCase identified(std::vector<Index> poses, double rms, double max) {
     result.poses = std::move(poses);
     result.identified = true;
     result.held_out.point_count = 3;
-    result.held_out.distance_rms = rms;
-    result.held_out.distance_p95 = max / 2;
-    result.held_out.distance_max = max;
+    result.held_out.rms = rms;
+    result.held_out.p95 = max / 2;
+    result.held_out.max = max;
     result.expected = rms / 2;
     return result;
 }
@@ -68,6 +68,19 @@ std::string csv_of(const Studies& studies) {
     std::string text;
     write_study_csv(studies, [&](std::string_view part) { text += part; });
     return text;
+}
+
+TEST(StudyTable, HasErrorsInAnImageInPixels) {
+    Study study = example_study();
+    study.units = &pixel_units;
+    const Table table = study_table(study);
+    EXPECT_EQ(table.header, (std::vector<std::string>{"poses", "d/px", "random 10 %/px", "50 %/px",
+                                                      "90 %/px", "subsets", "unidentified"}));
+    EXPECT_EQ(table.rows[0][1], "0.3000");
+    EXPECT_NE(csv_of(study).find("held_out_rms_px,held_out_max_px,held_out_p95_px,expected_rms_px"),
+              std::string::npos);
+    EXPECT_NE(answer({study}).front().text.find("leave 0.2 px"), std::string::npos)
+        << answer({study}).front().text;
 }
 
 TEST(StudyCsv, HoldsEveryCase) {

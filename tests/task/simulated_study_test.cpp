@@ -37,10 +37,9 @@ std::vector<double> numbers_of(const std::vector<Study>& studies) {
         for (const StudyRow& row : study.rows) {
             for (const auto* cases : {&row.optimal, &row.random}) {
                 for (const StudyCase& one : *cases) {
-                    numbers.insert(
-                        numbers.end(),
-                        {static_cast<double>(one.split), one.held_out.distance_rms,
-                         one.held_out.distance_p95, one.held_out.distance_max, one.expected});
+                    numbers.insert(numbers.end(),
+                                   {static_cast<double>(one.split), one.held_out.rms,
+                                    one.held_out.p95, one.held_out.max, one.expected});
                 }
             }
         }
@@ -156,7 +155,7 @@ TEST(SimulatedStudy, FindsTheModelErrorWhereNothingElseIsWrong) {
     const Study study = simulate_study({{"", campaign, {}}}, options).front();
     double square = 0;
     for (const StudyCase& one : study.rows[0].optimal) {
-        square += one.held_out.distance_rms * one.held_out.distance_rms / 20;
+        square += one.held_out.rms * one.held_out.rms / 20;
     }
     // Base and targets, 15 unknowns, are found from 540 numbers.
     EXPECT_NEAR(std::sqrt(square), std::sqrt(3 * (1 + 15.0 / 540)) * 0.2e-3, 0.01e-3);
@@ -166,7 +165,7 @@ TEST(SimulatedStudy, FindsTheModelErrorWhereNothingElseIsWrong) {
 double found_by_expected(const StudyCases& cases) {
     double found = 0, expected = 0;
     for (const StudyCase& one : cases) {
-        found += one.held_out.distance_rms * one.held_out.distance_rms;
+        found += one.held_out.rms * one.held_out.rms;
         expected += one.expected * one.expected;
     }
     return std::sqrt(found / expected);
@@ -185,7 +184,7 @@ TEST(SimulatedStudy, FindsWhatCalibrationsExpectUnlessTheTruthHasOtherErrors) {
     bending.spread.harmonic = 1e-3;
     options.trials = 30;
     const StudyRow wrong = simulate_study({{"", campaign, bending}}, options).front().rows[0];
-    EXPECT_GT(wrong.optimal[0].held_out.distance_rms, 2 * right.optimal[0].held_out.distance_rms);
+    EXPECT_GT(wrong.optimal[0].held_out.rms, 2 * right.optimal[0].held_out.rms);
 }
 
 TEST(SimulatedStudy, DrawsTheSameRobotsForEveryVariation) {
@@ -195,8 +194,8 @@ TEST(SimulatedStudy, DrawsTheSameRobotsForEveryVariation) {
     options.criteria.emplace();  // random poses are the same, too
     const auto studies = simulate_study({{"a", tracked_fanuc(), {}}, {"b", noisy, {}}}, options);
     for (std::size_t i = 0; i < 6; ++i) {
-        const double a = studies[0].rows[0].random[i].held_out.distance_rms;
-        const double b = studies[1].rows[0].random[i].held_out.distance_rms;
+        const double a = studies[0].rows[0].random[i].held_out.rms;
+        const double b = studies[1].rows[0].random[i].held_out.rms;
         EXPECT_NE(a, b);
         EXPECT_NEAR(a, b, 1e-4 * a);
     }

@@ -12,6 +12,7 @@
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/selection/choice.hpp"
 #include "support/campaigns.hpp"
+#include "support/sensors.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise {
@@ -42,7 +43,7 @@ StudyCase case_with_error(double rms) {
     StudyCase result;
     result.identified = true;
     result.held_out.point_count = 1;
-    result.held_out.distance_rms = rms;
+    result.held_out.rms = rms;
     return result;
 }
 
@@ -67,8 +68,44 @@ TEST(StudyPoseCounts, JudgesEachSubsetOnWhatItLeftOut) {
     const auto held_out =
         make_metrics(mean_residuals(example.campaign, estimate.parameters,
                                     take(example.measurements, all_but(14, chosen.poses))));
-    EXPECT_DOUBLE_EQ(chosen.held_out.distance_rms, held_out.distance_rms);
-    EXPECT_DOUBLE_EQ(chosen.held_out.distance_max, held_out.distance_max);
+    EXPECT_DOUBLE_EQ(chosen.held_out.rms, held_out.distance_rms);
+    EXPECT_DOUBLE_EQ(chosen.held_out.max, held_out.distance_max);
+}
+
+TEST(StudyPoseCounts, JudgesViewsOfACameraByPlacesInTheImage) {
+    Campaign campaign = testing::before_camera(testing::tracked_campaign(testing::fanuc()),
+                                               testing::fixed_camera());
+    campaign.spread = population_spread(campaign.robot);
+    const Measurements measured = simulate(campaign, {.pose_count = 40}).measurements;
+    StudyOptions options = small_options();
+    options.criteria = {Criterion::V};
+    options.pose_counts = {12};
+    options.splits = 4;
+    const Study found = study(campaign, measured, options);
+    EXPECT_EQ(found.units, &pixel_units);
+    ASSERT_EQ(found.rows.size(), 1u);
+    double squares = 0, expected = 0;
+    for (const StudyCase& one : found.rows[0].optimal) {
+        ASSERT_TRUE(one.identified);
+        EXPECT_GT(one.held_out.point_count, 100);
+        EXPECT_GT(one.held_out.max, one.held_out.p95);
+        EXPECT_GT(one.held_out.p95, one.held_out.rms);
+        squares += one.held_out.rms * one.held_out.rms;
+        expected += one.expected * one.expected;
+    }
+    EXPECT_NEAR(std::sqrt(squares / expected), 1, 0.35);
+    // By hand, of the first split.
+    const StudyCase& chosen = found.rows[0].optimal[0];
+    const auto part = take(measured, chosen.poses);
+    const auto estimate =
+        identify(campaign, part, register_base_and_targets(campaign, part).parameters);
+    const auto others =
+        RandomStream(campaign.seed, 0).subset(measured.configuration_count(), found.test_count);
+    const double rms =
+        make_metrics(mean_residuals(campaign, estimate.parameters, take(measured, others)),
+                     *campaign.sensor)
+            .orientation_rms;
+    EXPECT_NEAR(chosen.held_out.rms, rms, 1e-9);
 }
 
 TEST(StudyPoseCounts, ChoosesAndJudgesByTheTargetsSeen) {
@@ -95,7 +132,7 @@ TEST(StudyPoseCounts, ChoosesAndJudgesByTheTargetsSeen) {
         make_metrics(mean_residuals(example.campaign, estimate.parameters, left_out));
     EXPECT_EQ(held_out.point_count, (times_seen(left_out).array() > 0).count());
     EXPECT_EQ(chosen.held_out.point_count, held_out.point_count);
-    EXPECT_DOUBLE_EQ(chosen.held_out.distance_rms, held_out.distance_rms);
+    EXPECT_DOUBLE_EQ(chosen.held_out.rms, held_out.distance_rms);
 }
 
 TEST(StudyPoseCounts, IsTheSameForAnyNumberOfThreads) {
@@ -110,13 +147,11 @@ TEST(StudyPoseCounts, IsTheSameForAnyNumberOfThreads) {
         for (std::size_t k = 0; k < one[i].random.size(); ++k) {
             EXPECT_EQ(one[i].random[k].poses, three[i].random[k].poses);
             EXPECT_EQ(one[i].random[k].identified, three[i].random[k].identified);
-            EXPECT_EQ(one[i].random[k].held_out.distance_rms,
-                      three[i].random[k].held_out.distance_rms);
+            EXPECT_EQ(one[i].random[k].held_out.rms, three[i].random[k].held_out.rms);
         }
         for (std::size_t k = 0; k < one[i].optimal.size(); ++k) {
             EXPECT_EQ(one[i].optimal[k].poses, three[i].optimal[k].poses);
-            EXPECT_EQ(one[i].optimal[k].held_out.distance_rms,
-                      three[i].optimal[k].held_out.distance_rms);
+            EXPECT_EQ(one[i].optimal[k].held_out.rms, three[i].optimal[k].held_out.rms);
         }
     }
 }
@@ -336,9 +371,8 @@ TEST(CompareModels, GivesEachTheSameSplitsCountsAndRandomSubsets) {
             const StudyCase& random = studies[1].rows[i].random[k];
             EXPECT_EQ(studies[0].rows[i].random[k].poses, random.poses);
             EXPECT_EQ(studies[0].rows[i].random[k].split, random.split);
-            EXPECT_EQ(alone[i].random[k].held_out.distance_rms, random.held_out.distance_rms);
-            EXPECT_NE(studies[0].rows[i].random[k].held_out.distance_rms,
-                      random.held_out.distance_rms);
+            EXPECT_EQ(alone[i].random[k].held_out.rms, random.held_out.rms);
+            EXPECT_NE(studies[0].rows[i].random[k].held_out.rms, random.held_out.rms);
         }
         EXPECT_EQ(alone[i].optimal[0].poses, studies[1].rows[i].optimal[0].poses);
     }

@@ -46,6 +46,7 @@ struct Metrics {
     std::array<double, 3> coordinate_max{};
     double orientation_rms = 0;  ///< angle of the remaining rotation, or distance in an image
     double orientation_max = 0;
+    double orientation_p95 = 0;
     /// Of `orientation_rms`: rad, or 1000 px of a sensor with has_pixels().
     const AmountUnits* orientation_units = &angle_units;
 

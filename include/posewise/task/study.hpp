@@ -35,6 +35,8 @@ struct TrialSeries {
     Index splits = 0;                 ///< for measured configurations
     Index test_count = 0;             ///< configurations that a trial is judged on
     std::vector<std::string> ids;     ///< measured configurations
+    /// Of the errors that trials find.
+    const AmountUnits* units = &length_units;
 
     bool operator==(const TrialSeries&) const = default;
 };
@@ -88,12 +90,13 @@ using TrialCrew = std::function<void(const ComputeTrial& compute,
 /// The crew of one process: its threads.
 void run_on_threads(const ComputeTrial& compute, const std::function<void(const RunTrials&)>& lead);
 
-/// How far a calibrated robot is off at configurations it was not calibrated with: distances, m.
+/// How far a calibrated robot is off at configurations it was not calibrated with: distances, m;
+/// where no length is measured, angles, rad, or distances in a camera's image, 1000 px.
 struct HeldOut {
     Index point_count = 0;  ///< 0: there were none
-    double distance_rms = 0;
-    double distance_p95 = 0;
-    double distance_max = 0;
+    double rms = 0;
+    double p95 = 0;
+    double max = 0;
 };
 
 /// How well one subset calibrates the robot.
@@ -103,7 +106,7 @@ struct StudyCase {
     /// Means of the configurations that the split holds out, else of all that were not chosen;
     /// means, so that repeat noise does not blur the comparison. No points if none is left.
     HeldOut held_out;
-    double expected = 0;  ///< held_out.distance_rms as the calibration expects it
+    double expected = 0;  ///< held_out.rms as the calibration expects it
     Index split = 0;
 };
 
@@ -205,6 +208,7 @@ struct Study {
     Index test_count = 0;       ///< configurations that each split judges on
     std::string model{};        ///< which of several error models (compare_models()) or variations
     bool is_simulated = false;  ///< each split is a simulated robot (simulate_study())
+    const AmountUnits* units = &length_units;  ///< of the errors
 };
 
 /// Chooses k of the measured configurations by each criterion and at random, calibrates with them
@@ -267,12 +271,12 @@ std::string_view verdict_name(Verdict verdict);
 /// The planned cases of one criterion in a row, out of `criterion_count` criteria.
 StudyCases planned_cases(const StudyRow& row, std::size_t criterion, std::size_t criterion_count);
 
-/// p-quantile (0..1, linear between order statistics) of the held-out distance RMS. Unidentified
+/// p-quantile (0..1, linear between order statistics) of the held-out RMS. Unidentified
 /// cases count as worse than any other, so that dropping them cannot flatter the rest. Nothing if
 /// the quantile falls among them or nothing was held out.
 std::optional<double> held_out_quantile(const StudyCases& cases, double p);
 
-/// Median of StudyCase::expected over the identified cases, m; nothing if there is none.
+/// Median of StudyCase::expected over the identified cases; nothing if there is none.
 std::optional<double> median_expected(const StudyCases& cases);
 
 /// Number of cases that are not identified.

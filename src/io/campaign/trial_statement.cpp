@@ -1,10 +1,15 @@
 #include "trial_statement.hpp"
 
+#include "core/names.hpp"
 #include "io/format/fields.hpp"
 #include "posewise/core/version.hpp"
+#include "posewise/measurement/sensor.hpp"
 
 namespace posewise::detail {
 namespace {
+
+constexpr Names<const AmountUnits*, 3> error_units{
+    {{&length_units, "mm"}, {&angle_units, "mrad"}, {&pixel_units, "px"}}};
 
 void statement_fields(const Fields& file, StatedSeries& stated) {
     TrialSeries& series = stated.series;
@@ -20,6 +25,7 @@ void statement_fields(const Fields& file, StatedSeries& stated) {
     file("splits", series.splits, Count{});
     file("test_count", series.test_count, Count{});
     file("ids", series.ids);
+    file.optional("unit", series.units != &length_units, series.units, OneOf(error_units));
 }
 
 }  // namespace

@@ -147,15 +147,16 @@ Json advantage_to_json(const Advantage& advantage) {
 
 /// `first` is the same row of the first error model.
 Json planned_to_json(const Study& study, const StudyRow& row, const StudyRow& first) {
+    const std::string unit = detail::error_suffix(*study.units);
     Json list = Json::array();
     for (std::size_t c = 0; c < study.criteria.size(); ++c) {
         const auto cases = planned_cases(row, c, study.criteria.size());
         Json& json = list.emplace_back();
         json["criterion"] = criterion_name(study.criteria[c]);
-        json["held_out_rms_mm"] = detail::millimetres(held_out_quantile(cases, 0.5));
-        json["held_out_rms_p10_mm"] = detail::millimetres(held_out_quantile(cases, 0.1));
-        json["held_out_rms_p90_mm"] = detail::millimetres(held_out_quantile(cases, 0.9));
-        json["expected_rms_mm"] = detail::millimetres(median_expected(cases));
+        json["held_out_rms" + unit] = detail::millimetres(held_out_quantile(cases, 0.5));
+        json["held_out_rms_p10" + unit] = detail::millimetres(held_out_quantile(cases, 0.1));
+        json["held_out_rms_p90" + unit] = detail::millimetres(held_out_quantile(cases, 0.9));
+        json["expected_rms" + unit] = detail::millimetres(median_expected(cases));
         if (const auto advantage = planned_advantage(study, row, c)) {
             json["against_random"] = advantage_to_json(*advantage);
         }
@@ -168,6 +169,7 @@ Json planned_to_json(const Study& study, const StudyRow& row, const StudyRow& fi
 }
 
 Json study_row_to_json(const Study& study, const StudyRow& row, const StudyRow& first) {
+    const std::string unit = detail::error_suffix(*study.units);
     const auto quantile = [&](double p) {
         return detail::millimetres(held_out_quantile(row.random, p));
     };
@@ -178,9 +180,9 @@ Json study_row_to_json(const Study& study, const StudyRow& row, const StudyRow& 
             {"random",
              {{"subsets", row.random.size()},
               {"unidentified", count_unidentified(row.random)},
-              {"held_out_rms_p10_mm", quantile(0.1)},
-              {"held_out_rms_p50_mm", quantile(0.5)},
-              {"held_out_rms_p90_mm", quantile(0.9)}}}};
+              {"held_out_rms_p10" + unit, quantile(0.1)},
+              {"held_out_rms_p50" + unit, quantile(0.5)},
+              {"held_out_rms_p90" + unit, quantile(0.9)}}}};
 }
 
 // ---- correct ----
@@ -367,6 +369,7 @@ std::string to_json(const std::vector<Study>& studies) {
     document["splits"] = first.splits;
     document["judged_on"] = first.test_count;
     document["simulated"] = first.is_simulated;
+    document["unit"] = first.units->error;
     document["models"] = make_list(studies, [&](const Study& study) {
         Json model = {{"name", study.model}, {"rows", Json::array()}};
         if (study.is_simulated) model["trials"] = study.splits;

@@ -29,12 +29,12 @@ Loss read_loss(const JsonValue& root) {
 }
 
 /// Returns the criterion of each.
-std::vector<std::string> check_planned(const JsonValue& list) {
+std::vector<std::string> check_planned(const JsonValue& list, const std::string& unit) {
     std::vector<std::string> criteria;
     for (const JsonValue& planned : list.list()) {
         criteria.push_back(planned["criterion"].text());
-        planned["held_out_rms_mm"].number_or(0);
-        planned["expected_rms_mm"].number_or(0);
+        planned["held_out_rms" + unit].number_or(0);
+        planned["expected_rms" + unit].number_or(0);
     }
     if (criteria.empty()) throw list.error("is empty; must hold what each criterion chose");
     return criteria;
@@ -44,19 +44,20 @@ std::vector<std::string> check_planned(const JsonValue& list) {
 void check_study(const JsonValue& study) {
     study["campaign"].text();
     study["simulated"].boolean();
+    const std::string unit = '_' + (study.has("unit") ? study["unit"].text() : "mm");
     for (const JsonValue& model : study["models"].list()) {
         model["name"].text();
         std::vector<std::string> criteria;
         for (const JsonValue& row : model["rows"].list()) {
             row["pose_count"].count(1);
-            const std::vector<std::string> found = check_planned(row["planned"]);
+            const std::vector<std::string> found = check_planned(row["planned"], unit);
             if (criteria.empty()) criteria = found;
             if (found != criteria) {
                 throw row["planned"].error("is not by the criteria of the first row");
             }
             const JsonValue random = row["random"];
             for (const char* const quantile : {"p10", "p50", "p90"}) {
-                random[std::string("held_out_rms_") + quantile + "_mm"].number_or(0);
+                random[std::string("held_out_rms_") + quantile + unit].number_or(0);
             }
             random["subsets"].count(0);
             random["unidentified"].count(0);

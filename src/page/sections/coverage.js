@@ -37,12 +37,12 @@ function pairsOf({ accuracy }) {
   return [heldOut, ...judged].filter(({ predicted, found }) => isNumber(predicted) && isNumber(found)).map((one) => ({ ...one, unit }));
 }
 
-const studyRows = ({ models }) =>
+const studyRows = ({ models, unit = 'mm' }) =>
   (models ?? []).flatMap((model) =>
     model.rows.flatMap((row) =>
       row.planned
-        .filter((one) => isNumber(one.held_out_rms_mm) && isNumber(one.expected_rms_mm))
-        .map((one) => ({ model: model.name, count: row.pose_count, criterion: one.criterion, predicted: one.expected_rms_mm, found: one.held_out_rms_mm })),
+        .filter((one) => isNumber(one[`held_out_rms_${unit}`]) && isNumber(one[`expected_rms_${unit}`]))
+        .map((one) => ({ model: model.name, count: row.pose_count, criterion: one.criterion, predicted: one[`expected_rms_${unit}`], found: one[`held_out_rms_${unit}`] })),
     ),
   );
 

@@ -14,14 +14,20 @@ const interval = (one) => (!one || one.lower === one.upper ? '-' : `${fixed(one.
 /** Rows that fewer splits are finished of than were asked for. */
 const isPartial = (model, splits) => model.rows.some((row) => row.splits < splits);
 
-function studyTable(model, { splits, simulated }) {
+/** What a document of a study names its errors by, which ends in their unit. */
+const keysOf = ({ unit = 'mm' }) => ({
+  unit,
+  found: `held_out_rms_${unit}`,
+  expected: `expected_rms_${unit}`,
+  quantile: (part) => `held_out_rms_p${String(part).padStart(2, '0')}_${unit}`,
+});
+
+function studyTable(model, { splits, simulated }, keys) {
   const criteria = model.rows[0].planned.map((one) => one.criterion);
   const header = [
     'poses',
-    ...criteria.flatMap((c) => (splits > 0 ? [`${c}/mm`, 'expected', `${c}/random`, '95 %'] : [`${c}/mm`])),
-    'random 10 %/mm',
-    '50 %/mm',
-    '90 %/mm',
+    ...criteria.flatMap((c) => (splits > 0 ? [`${c}/${keys.unit}`, 'expected', `${c}/random`, '95 %'] : [`${c}/${keys.unit}`])),
+    ...['random 10 %', '50 %', '90 %'].map((name) => `${name}/${keys.unit}`),
     'subsets',
     'unidentified',
     ...(isPartial(model, splits) ? ['splits'] : []),
@@ -30,12 +36,10 @@ function studyTable(model, { splits, simulated }) {
     String(number),
     ...planned.flatMap((one) =>
       splits > 0
-        ? [mm(one.held_out_rms_mm), mm(one.expected_rms_mm), fixed(one.against_random?.ratio, 2), interval(one.against_random)]
-        : [mm(one.held_out_rms_mm)],
+        ? [mm(one[keys.found]), mm(one[keys.expected]), fixed(one.against_random?.ratio, 2), interval(one.against_random)]
+        : [mm(one[keys.found])],
     ),
-    mm(random?.held_out_rms_p10_mm),
-    mm(random?.held_out_rms_p50_mm),
-    mm(random?.held_out_rms_p90_mm),
+    ...[10, 50, 90].map((part) => mm(random?.[keys.quantile(part)])),
     String(random?.subsets ?? 0),
     random ? String(random.unidentified) : '-',
     String(finished ?? splits),
@@ -44,25 +48,26 @@ function studyTable(model, { splits, simulated }) {
 }
 
 /** The widest quantiles of the errors that all rows have: a band over splits or robots, or over random subsets. */
-function bandOf(rows, pick, name, colour) {
+function bandOf(rows, pick, name, colour, keys) {
   const found = rows.map((row) => pick(row) ?? {});
   const parts = Object.keys(Object.assign({}, ...found))
-    .map((key) => Number(/^held_out_rms_p(\d+)_mm$/.exec(key)?.[1]))
+    .map((key) => Number(/^held_out_rms_p(\d+)_/.exec(key)?.[1]))
     .filter((part) => part !== 50 && !Number.isNaN(part));
   const [low, high] = [Math.min(...parts), Math.max(...parts)];
-  const values = (part) => found.map((one) => one[`held_out_rms_p${String(part).padStart(2, '0')}_mm`] ?? null);
+  const values = (part) => found.map((one) => one[keys.quantile(part)] ?? null);
   const band = { label: `${name}, ${low} to ${high} %`, low: values(low), high: values(high), colour };
   return [band.low, band.high].every((list) => list.some((value) => value !== null)) ? band : null;
 }
 
 function studyFigure({ document }, model) {
   const { rows } = model;
+  const keys = keysOf(document);
   const xs = rows.map((row) => row.pose_count);
   const values = (pick) => rows.map((row) => pick(row) ?? null);
   const criteria = rows[0].planned.map((one) => one.criterion);
   const found = criteria.map((criterion, c) => ({
     label: `planned by ${criterion}, found`,
-    values: values((row) => row.planned[c].held_out_rms_mm),
+    values: values((row) => row.planned[c][keys.found]),
     colour: lines[c % lines.length],
     kind: 'both',
   }));
@@ -70,15 +75,15 @@ function studyFigure({ document }, model) {
     .slice(0, 1)
     .map((criterion, c) => ({
       label: `planned by ${criterion}, predicted`,
-      values: values((row) => row.planned[c].expected_rms_mm),
+      values: values((row) => row.planned[c][keys.expected]),
       colour: lines[c % lines.length],
       dash: [6, 5],
       width: 1.5,
     }));
-  const middle = { label: 'random, median', values: values((row) => row.random?.held_out_rms_p50_mm), colour: 'muted', width: 1.5 };
+  const middle = { label: 'random, median', values: values((row) => row.random?.[keys.quantile(50)]), colour: 'muted', width: 1.5 };
   const bands = [
-    bandOf(rows, (row) => row.random, 'random', 'muted'),
-    ...criteria.map((criterion, c) => bandOf(rows, (row) => row.planned[c], `planned by ${criterion}`, lines[c % lines.length])),
+    bandOf(rows, (row) => row.random, 'random', 'muted', keys),
+    ...criteria.map((criterion, c) => bandOf(rows, (row) => row.planned[c], `planned by ${criterion}`, lines[c % lines.length], keys)),
   ].filter(Boolean);
   // Random subsets that hardly identify the model would press all else together.
   const known = (lists) => lists.flat().filter((value) => value !== null);
@@ -90,16 +95,16 @@ function studyFigure({ document }, model) {
   ];
   const series = [...found, ...expected, middle].filter((one) => one.values.some((value) => value !== null));
   return figure(
-    `RMS position error${document.simulated ? ' over the workspace' : ', held out'}, against the number of poses${model.name ? `: ${model.name}` : ''}.`,
+    `RMS ${keys.unit === 'mm' ? 'position ' : ''}error${document.simulated ? ' over the workspace' : ', held out'}, against the number of poses${model.name ? `: ${model.name}` : ''}.`,
     chart({
-      label: `Error against number of poses: ${rows.map((row) => `${row.pose_count} poses ${mm(row.planned[0].held_out_rms_mm)} mm planned, ${mm(row.random?.held_out_rms_p50_mm)} mm random`).join('; ')}`,
+      label: `Error against number of poses: ${rows.map((row) => `${row.pose_count} poses ${mm(row.planned[0][keys.found])} ${keys.unit} planned, ${mm(row.random?.[keys.quantile(50)])} ${keys.unit} random`).join('; ')}`,
       x: { label: 'poses', ticks: xs.length <= 10 ? xs : undefined },
-      y: { label: 'RMS error/mm', log: true, range },
+      y: { label: `RMS error/${keys.unit}`, log: true, range },
       xs,
       series,
       bands,
     }),
-    [studyTable(model, document)],
+    [studyTable(model, document, keys)],
   );
 }
 

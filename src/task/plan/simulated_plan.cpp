@@ -115,8 +115,8 @@ class PlanTrials {
         const HeldOut off = detail::compare_positions(
             judged(detail::target_positions(campaign_, estimate->parameters, test_)),
             judged(trial.positions));
-        if (options_.quantity == ErrorQuantity::Rms) return off.distance_rms;
-        return options_.quantity == ErrorQuantity::Max ? off.distance_max : off.distance_p95;
+        if (options_.quantity == ErrorQuantity::Rms) return off.rms;
+        return options_.quantity == ErrorQuantity::Max ? off.max : off.p95;
     }
 
   private:

@@ -94,7 +94,7 @@ double relative_half_width(const Study& study, const StudyRow& row, std::size_t 
     const StudyCases planned = planned_cases(row, criterion, study.criteria.size());
     const auto mean = detail::geometric_mean([&](const std::function<void(double)>& visitor) {
         for (const StudyCase& found : planned) {
-            visitor(found.identified ? std::log(found.held_out.distance_rms)
+            visitor(found.identified ? std::log(found.held_out.rms)
                                      : std::numeric_limits<double>::quiet_NaN());
         }
     });

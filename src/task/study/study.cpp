@@ -167,9 +167,11 @@ StudyCase run(const Setting& setting, const MeasuredCase& job, Index pose_count)
         const Measurements others = take(measurements, judged);
         const Metrics metrics =
             make_metrics(mean_residuals(setting.campaign, estimate->parameters, others),
-                         setting.campaign.sensor->lengths_per_target());
-        result.held_out = {metrics.point_count, metrics.distance_rms, metrics.distance_p95,
-                           metrics.distance_max};
+                         *setting.campaign.sensor);
+        const bool has_lengths = metrics.coordinate_count > 0;
+        result.held_out = {metrics.point_count, metrics.rms(),
+                           has_lengths ? metrics.distance_p95 : metrics.orientation_p95,
+                           has_lengths ? metrics.distance_max : metrics.orientation_max};
         result.expected = expected_error(setting.campaign, *estimate, others).total();
     }
     result.identified = true;
@@ -238,6 +240,7 @@ Prepared prepare(Index least, const RobotModel& model, const Measurements& measu
     cases.splits = split_count;
     cases.test_count = static_cast<Index>(splits.front().test.size());
     cases.ids = measurements.ids;
+    cases.units = &campaign.sensor->main_units();
     if (!prepared.undetermined.empty()) return prepared;
     cases.pose_counts = counts;
     check_some_are_left(counts, measurements.configuration_count());
@@ -262,11 +265,6 @@ Study study(const Campaign& campaign, const Measurements& measurements,
 std::vector<Study> compare_models(const std::vector<RobotModel>& models,
                                   const Measurements& measurements, const StudyOptions& asked) {
     if (models.empty()) return {};
-    if (models.front().campaign.sensor->has_pixels()) {
-        throw InputError(
-            "a study of measured poses judges by distances; corners in pixels have none: a "
-            "simulated study says how many views are enough");
-    }
     StudyOptions options = asked;
     detail::complete(options, models.front().campaign);
     const Index least = largest_least_count(models, options);

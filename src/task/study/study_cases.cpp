@@ -56,10 +56,9 @@ SelectOptions study_selection(const StudyOptions& options, const Campaign& campa
 
 void append_case(const StudyCase& study_case, std::vector<double>& values) {
     const HeldOut& held_out = study_case.held_out;
-    values.insert(
-        values.end(),
-        {study_case.identified ? 1.0 : 0.0, static_cast<double>(held_out.point_count),
-         held_out.distance_rms, held_out.distance_p95, held_out.distance_max, study_case.expected});
+    values.insert(values.end(),
+                  {study_case.identified ? 1.0 : 0.0, static_cast<double>(held_out.point_count),
+                   held_out.rms, held_out.p95, held_out.max, study_case.expected});
     for (const Index pose : study_case.poses) values.push_back(static_cast<double>(pose));
 }
 
@@ -67,9 +66,9 @@ StudyCase read_case(const double* values, std::size_t width) {
     StudyCase study_case;
     study_case.identified = values[0] != 0;
     study_case.held_out.point_count = static_cast<Index>(values[1]);
-    study_case.held_out.distance_rms = values[2];
-    study_case.held_out.distance_p95 = values[3];
-    study_case.held_out.distance_max = values[4];
+    study_case.held_out.rms = values[2];
+    study_case.held_out.p95 = values[3];
+    study_case.held_out.max = values[4];
     study_case.expected = values[5];
     for (std::size_t k = case_width; k < width; ++k) {
         study_case.poses.push_back(static_cast<Index>(values[k]));

@@ -121,6 +121,7 @@ Study detail::study_of_table(const TrialSeries& series, std::shared_ptr<const Tr
     study.campaign = series.campaign;
     study.model = series.variation;
     study.ids = series.ids;
+    study.units = series.units;
     study.criteria = series.criteria;
     study.is_simulated = series.is_simulated;
     study.splits = series.is_simulated ? count : series.splits;

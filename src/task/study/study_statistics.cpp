@@ -123,7 +123,7 @@ std::optional<double> held_out_quantile(const StudyCases& cases, double p) {
                 if (!study_case.identified) {
                     visitor(worst);
                 } else if (study_case.held_out.point_count > 0) {
-                    visitor(study_case.held_out.distance_rms);
+                    visitor(study_case.held_out.rms);
                 }
             }
         },
