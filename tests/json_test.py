@@ -310,7 +310,18 @@ def check_cameras():
     for image in images:
         percent = round(100 * image["covered"])
         expect(f"{percent} % of camera {image['camera']}'s" in text, f"calibrate: {image}: {text}")
+    places, sigma = document["hand_eye"], document["sigma"]
+    expect([places["board"]["in"], places["camera"]["in"]] == ["flange", "base"], f"calibrate: {places}")
+    for k, axis in enumerate("xyz"):  # the board's place is a parameter itself
+        deviation = places["board"]["deviations"][0]["position_mm"][k]
+        expect(close(deviation, 1e3 * sigma[f"board.{axis}_m"], 9), f"calibrate: board.{axis}: {deviation}")
+    for place in places.values():
+        half_axes = [one["half_axis_mm"] for one in place["ellipsoid"]]
+        squares = sum(value ** 2 for value in place["deviations"][1]["position_mm"])
+        expect(half_axes == sorted(half_axes), f"calibrate: {half_axes}")
+        expect(close(sum(value ** 2 for value in half_axes), 7.814727903251179 * squares, 9), f"calibrate: {place}")
     document, _ = both("report", "views.json", "-o", "views.html")
+    expect(document["parts"][0]["scene"]["views"]["on_flange"] == "board", "report: views")
     residuals = document["parts"][0]["residuals"]
     for image, cells in zip(images, residuals["images"]):
         counts = cells["counts"]

@@ -34,6 +34,7 @@ std::vector<std::pair<std::string, io::PageResiduals>> judged_residuals(
     const Parameters& found = result.estimate.parameters;
     if (result.validation && result.refitted) {
         add("validation", *options.validation, *result.refitted, result.refitted->nominal);
+        judged.back().second.has_own_set_up = true;
     } else if (result.validation) {
         add("validation", *options.validation, result.campaign, found);
     }

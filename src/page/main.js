@@ -8,6 +8,7 @@ import * as before from './sections/before_after.js';
 import * as budget from './sections/budget.js';
 import * as coverage from './sections/coverage.js';
 import * as map from './sections/error_map.js';
+import * as handEye from './sections/hand_eye.js';
 import * as image from './sections/image.js';
 import * as measured from './sections/measured.js';
 import * as models from './sections/model_selection.js';
@@ -28,6 +29,7 @@ const sections = [
   map,
   residuals,
   image,
+  handEye,
   parameters,
   models,
   coverage,

@@ -202,6 +202,40 @@ TEST(ToPage, HasThePlacesInTheImageOfEachCamera) {
     }
 }
 
+TEST(ToPage, HasCamerasBoardAndWhereTheyAreAtOtherPoses) {
+    const Campaign campaign = testing::before_camera(testing::tracked_campaign(testing::fanuc()),
+                                                     testing::camera_on_flange());
+    const Measurements measured = simulate(campaign, {.pose_count = 8, .repeats = 1}).measurements;
+    const auto residuals = [&] {
+        return page_residuals(campaign, measured,
+                              list_residuals(campaign, campaign.nominal, measured));
+    };
+    PagePart part = part_of("camera");
+    part.scene = make_scene(campaign, campaign.nominal);
+    part.residuals = residuals();
+    part.residuals->judged = {{"validation", residuals()}, {"left_out", residuals()}};
+    part.residuals->judged[0].second.has_own_set_up = true;
+    const json shown = json::parse(to_json(std::vector<PagePart>{part}))["parts"][0];
+
+    const json& views = shown["scene"]["views"];
+    EXPECT_EQ(views["on_flange"], "camera");
+    for (std::size_t k = 0; k < 16; ++k) {
+        const auto number = static_cast<Index>(k);
+        EXPECT_EQ(views["flange_from_it"][k].get<double>(),
+                  part.scene->views->flange_from_it.matrix()(number / 4, number % 4));
+    }
+    EXPECT_EQ(views["cameras"][0]["in_first"].size(), 16U);
+    EXPECT_NEAR(views["cameras"][0]["window"][2].get<double>(), (1280.0 - 650) / 700, 1e-6);
+    EXPECT_EQ(views["corners"][5], json({0.1, 0.1, 0.0}));
+
+    const json& left = shown["residuals"]["left_out"];
+    EXPECT_EQ(left["configurations"]["id"], json(measured.ids));
+    EXPECT_NEAR(left["configurations"]["joints"][3][2].get<double>(), measured.configurations(3, 2),
+                5.1e-7);
+    EXPECT_EQ(left["readings"]["configuration"], shown["residuals"]["readings"]["configuration"]);
+    EXPECT_FALSE(shown["residuals"]["validation"].contains("configurations"));
+}
+
 TEST(ToPage, HasWhereAPlanIsExpectedToShowCorners) {
     const Campaign points = testing::tracked_campaign(testing::fanuc());
     const Campaign campaign = testing::before_camera(points, testing::fixed_camera());

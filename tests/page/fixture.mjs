@@ -190,6 +190,42 @@ export function makePlan(count = 12, name = 'cell', places = 200) {
   };
 }
 
+const foundPlace = (frame, position, rpy, axes) => ({
+  in: frame,
+  position_m: position,
+  quaternion_wxyz: [1, 0, 0, 0],
+  rpy_deg: rpy,
+  deviations: axes.map((name, k) => {
+    const [position, rotation] = [
+      [0.1, 0.2, 0.3],
+      [0.4, 0.5, 0.6],
+    ].map((list) => (k === 0 ? list : list.toReversed()));
+    return { axes: name, position_mm: position, rotation_mrad: rotation };
+  }),
+  ellipsoid: [0.2795, 0.559, 0.8385].map((half, k) => ({ half_axis_mm: half, direction: [0, 1, 2].map((axis) => (axis === k ? 1 : 0)) })),
+});
+
+/** The part as two cameras on the flange measure it, by a board of 12 corners. */
+export function withCamera(part) {
+  const unit = (x, y, z) => [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1];
+  const window = [-0.5, -0.4, 0.5, 0.4];
+  part.scene.views = {
+    on_flange: 'camera',
+    flange_from_it: unit(0.1, 0, 0.2),
+    cameras: [
+      { in_first: unit(0, 0, 0), window },
+      { in_first: unit(0.1, 0, 0), window },
+    ],
+    corners: Array.from({ length: 12 }, (unused, k) => [0.1 * (k % 4), 0.1 * Math.floor(k / 4), 0]),
+  };
+  if (part.document.kind !== 'posewise estimate') return part;
+  part.document.hand_eye = {
+    camera: foundPlace('flange', [0.1, 0, 0.2], [0, 0, 0], ['flange', 'camera']),
+    board: foundPlace('base', [0.001, 0.002, 0.003], [4, 5, 6], ['base', 'board']),
+  };
+  return part;
+}
+
 /** Metrics with the keys of estimates. */
 const metrics = (scale) => ({
   point_count: 120,

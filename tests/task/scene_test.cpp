@@ -138,5 +138,36 @@ TEST(ReadingNames, AreThoseOfTargets) {
               (std::vector<std::string>{"target1", "target2", "target3"}));
 }
 
+TEST(MakeScene, HasCamerasAndBoard) {
+    const Campaign points = tracked_campaign(fanuc());
+    EXPECT_FALSE(make_scene(points).views);
+    CameraSetup setup = three_cameras();
+    setup.others[1].image.reset();
+    const Campaign campaign = before_camera(points, setup);
+    const auto& sensor = dynamic_cast<const CameraSensor&>(*campaign.sensor);
+    const Scene scene = make_scene(campaign);
+    ASSERT_TRUE(scene.views);
+    const SceneViews& views = *scene.views;
+    EXPECT_FALSE(views.is_camera_on_flange);
+    const VectorXd& unknowns = campaign.nominal.sensor;
+    EXPECT_TRUE(views.flange_from_it.isApprox(sensor.place(unknowns)));
+    ASSERT_EQ(views.cameras.size(), 3U);
+    EXPECT_TRUE(views.cameras[2].in_first.isApprox(sensor.placed(2, unknowns).in_first));
+    EXPECT_EQ(views.corners, setup.corners);
+    // Edges of the image by a pinhole; without a size it is centred.
+    const Intrinsics pinhole{1210, 1190, 655, 470};
+    const auto& seen = views.cameras[0].window;
+    EXPECT_TRUE(project(pinhole, {seen[0], seen[1], 1}).isZero(1e-9));
+    EXPECT_TRUE(project(pinhole, {seen[2], seen[3], 1}).isApprox(*setup.image));
+    const auto& centred = views.cameras[2].window;
+    EXPECT_DOUBLE_EQ(centred[0], -centred[2]);
+    EXPECT_DOUBLE_EQ(centred[1], -centred[3]);
+    setup = camera_on_flange();
+    setup.intrinsics.fx = 0;
+    const Scene unsure = make_scene(before_camera(points, setup));
+    EXPECT_TRUE(unsure.views->is_camera_on_flange);
+    EXPECT_EQ(unsure.views->cameras[0].window, (std::array<double, 4>{-0.5, -0.5, 0.5, 0.5}));
+}
+
 }  // namespace
 }  // namespace posewise

@@ -119,6 +119,7 @@ struct PageResiduals {
     std::vector<PageImage> images{};  ///< one a camera; empty: no camera
     /// "validation", "verification", "left_out": residuals of poses it was judged at.
     std::vector<std::pair<std::string, PageResiduals>> judged{};
+    bool has_own_set_up = false;  ///< base or targets are others than those of the page's scene
 };
 /// Adds the words of the campaign's sensor.
 PageResiduals page_residuals(const Campaign& campaign, const Measurements& measurements,

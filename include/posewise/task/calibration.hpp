@@ -213,6 +213,33 @@ struct ValidationError : InputError {
 Calibration calibrate(const Campaign& campaign, const Measurements& measurements,
                       const CalibrationOptions& options = {});
 
+// Hand-eye: where camera and board are.
+
+/// Where a frame was found in another one, and how sure that is.
+struct FoundPlace {
+    Isometry3d place = Isometry3d::Identity();
+    /// Of a small motion of the frame: its origin's place (m), then its rotation vector (rad),
+    /// along the axes of the frame that it is in.
+    Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+};
+/// Standard deviations (6) along the axes of the frame that it is in, or along its own.
+VectorXd deviations_of(const FoundPlace& found, bool is_along_own);
+/// Half axes, in columns, of the ellipsoid that has the frame's origin with 95 % (all three
+/// coordinates together, chi-squared), shortest first; m, along the axes of the frame that it is
+/// in.
+Matrix3d ellipsoid_of(const FoundPlace& found);
+
+struct HandEye {
+    bool is_camera_on_flange = false;  ///< else the board is
+    /// In the flange frame; nothing: it is known.
+    std::optional<FoundPlace> on_flange{};
+    /// The other one in the base frame; nothing: it is known.
+    std::optional<FoundPlace> at_base{};
+};
+/// By the estimate and its covariance, base and sensor jointly with the robot's errors. Nothing:
+/// the sensor measures neither corners in an image nor, from the flange, poses of a board.
+std::optional<HandEye> find_hand_eye(const Campaign& campaign, const Estimate& estimate);
+
 // Residuals of each reading, to look for what a calibration does not explain.
 
 /// Where a target is, seen from the instrument.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +48,22 @@ struct SceneInstrument {
     Vector3d position = Vector3d::Zero();
 };
 
+/// A camera and how far it sees to each side.
+struct SceneCamera {
+    Isometry3d in_first = Isometry3d::Identity();  ///< its place in the first camera's frame
+    /// Left, top, right and bottom of its image as x/z and y/z, without distortion.
+    std::array<double, 4> window{};
+};
+
+/// Cameras and what they see. What is not on the flange stands in the world's origin.
+struct SceneViews {
+    bool is_camera_on_flange = false;  ///< else the board is
+    Isometry3d flange_from_it =
+        Isometry3d::Identity();  ///< place of the first camera, or the board
+    std::vector<SceneCamera> cameras;
+    std::vector<Vector3d> corners;  ///< of the board, in its frame
+};
+
 struct Scene {
     /// Its elements include constant errors. What else depends on the configuration than the joints
     /// is left out, and so are elements that do nothing.
@@ -58,6 +75,7 @@ struct Scene {
     std::vector<SceneWall> walls;
     std::optional<double> floor_z;              ///< height of a level wall
     std::optional<SceneInstrument> instrument;  ///< if its place is known
+    std::optional<SceneViews> views{};          ///< of a sensor that is a camera
 };
 
 /// The robot with these parameters and its cell.

@@ -35,6 +35,38 @@ Json other_sigmas_to_json(const Campaign& campaign, const Estimate& estimate,
     return others;
 }
 
+Json place_to_json(const FoundPlace& found, const std::string& own, const std::string& outer) {
+    Json json = detail::base_to_json(found.place);
+    json["in"] = outer;
+    for (const auto& [axes, is_own] : {std::pair(outer, false), std::pair(own, true)}) {
+        const VectorXd deviations = deviations_of(found, is_own);
+        json["deviations"].push_back(
+            {{"axes", axes},
+             {"position_mm", detail::vector_to_json(mm_per_m * deviations.head(3))},
+             {"rotation_mrad", detail::vector_to_json(mrad_per_rad * deviations.tail(3))}});
+    }
+    const Matrix3d half_axes = mm_per_m * ellipsoid_of(found);
+    for (Index k = 0; k < 3; ++k) {
+        const Vector3d half_axis = half_axes.col(k);
+        json["ellipsoid"].push_back(
+            {{"half_axis_mm", half_axis.norm()},
+             {"direction", detail::vector_to_json(half_axis.normalized())}});
+    }
+    return json;
+}
+
+/// Where camera and board are, as far as that was found; empty: nowhere.
+Json hand_eye_to_json(const Campaign& campaign, const Estimate& estimate) {
+    const auto found = find_hand_eye(campaign, estimate);
+    Json json = Json::object();
+    if (!found) return json;
+    const std::string on_flange = found->is_camera_on_flange ? "camera" : "board";
+    const std::string other = found->is_camera_on_flange ? "board" : "camera";
+    if (found->on_flange) json[on_flange] = place_to_json(*found->on_flange, on_flange, "flange");
+    if (found->at_base) json[other] = place_to_json(*found->at_base, other, "base");
+    return json;
+}
+
 /// All parameters' names, and the rows of their covariance up to its diagonal.
 Json covariance_to_json(const Estimate& estimate) {
     Json rows = Json::array();
@@ -323,6 +355,9 @@ Json estimate_to_json(const Calibration& calibration, Provenance made_from) {
     document.update(detail::parameters_to_json(campaign, estimate.parameters, &sigmas));
     document["sigma"] = other_sigmas_to_json(campaign, estimate, sigmas);
     document["covariance"] = covariance_to_json(estimate);
+    if (Json places = hand_eye_to_json(campaign, estimate); !places.empty()) {
+        document["hand_eye"] = std::move(places);
+    }
     document["strongest_correlations"] = correlations_to_json(estimate);
     document["accuracy"] = accuracy_to_json(calibration);
     if (estimate.loss.kind != LossKind::Squares) {

@@ -86,6 +86,19 @@ Json joints_to_json(const PagePart& part, const VectorXd& configuration) {
                             : configuration);
 }
 
+Json views_to_json(const SceneViews& views) {
+    Json json = {{"on_flange", views.is_camera_on_flange ? "camera" : "board"},
+                 {"flange_from_it", pose_to_json(views.flange_from_it)},
+                 {"cameras", Json::array()},
+                 {"corners", Json::array()}};
+    for (const SceneCamera& camera : views.cameras) {
+        json["cameras"].push_back({{"in_first", pose_to_json(camera.in_first)},
+                                   {"window", drawn(Eigen::Vector4d(camera.window.data()))}});
+    }
+    for (const Vector3d& corner : views.corners) json["corners"].push_back(drawn(corner));
+    return json;
+}
+
 Json scene_to_json(const PagePart& part) {
     const Scene& scene = *part.scene;
     Json json = {{"joints", Json::array()},
@@ -114,6 +127,7 @@ Json scene_to_json(const PagePart& part) {
         json["instrument"] = {{"kind", scene.instrument->kind},
                               {"position", drawn(scene.instrument->position)}};
     }
+    if (scene.views) json["views"] = views_to_json(*scene.views);
     const RowMatrixXd& measured = part.configurations.joints;
     if (part.first_pose || measured.rows() > 0) {
         VectorXd first = part.first_pose ? *part.first_pose : measured.row(0).transpose();
@@ -125,8 +139,7 @@ Json scene_to_json(const PagePart& part) {
 
 // ---- Configurations, residuals and errors ----
 
-Json configurations_to_json(const PagePart& part) {
-    const PageConfigurations& measured = part.configurations;
+Json configurations_to_json(const PagePart& part, const PageConfigurations& measured) {
     Json joints = Json::array();
     for (Index i = 0; i < measured.joints.rows(); ++i) {
         joints.push_back(joints_to_json(part, measured.joints.row(i).transpose()));
@@ -242,7 +255,8 @@ Json expected_to_json(const PageResiduals& expected) {
     return json;
 }
 
-Json residuals_to_json(const PageResiduals& residuals) {
+Json residuals_to_json(const PagePart& part) {
+    const PageResiduals& residuals = *part.residuals;
     Json json = axes_to_json(residuals);
     json["readings"] = readings_to_json(residuals);
     for (const auto& [poses, others] : residuals.judged) {
@@ -253,6 +267,12 @@ Json residuals_to_json(const PageResiduals& residuals) {
         readings["residual"] = columns_of(
             others, [](const ReadingResidual& one) { return &one.calibrated; }, in_nm);
         add_places(readings, others);
+        if (others.images.empty() || others.has_own_set_up) continue;
+        const Measurements& measured = others.measurements;
+        json[poses]["configurations"] =
+            configurations_to_json(part, {measured.ids, measured.configurations});
+        readings["configuration"] =
+            column_of(others, [](const ReadingResidual& one) { return one.configuration; });
     }
     return json;
 }
@@ -288,8 +308,9 @@ Json part_to_json(const PagePart& part) {
         throw input_error_at({part.title}, "is not JSON; must be a document of posewise");
     }
     if (part.scene) json["scene"] = scene_to_json(part);
-    if (!part.configurations.ids.empty()) json["configurations"] = configurations_to_json(part);
-    if (part.residuals) json["residuals"] = residuals_to_json(*part.residuals);
+    if (!part.configurations.ids.empty())
+        json["configurations"] = configurations_to_json(part, part.configurations);
+    if (part.residuals) json["residuals"] = residuals_to_json(part);
     if (part.expected) json["expected"] = expected_to_json(*part.expected);
     if (part.error_map) json["error_map"] = error_map_to_json(*part.error_map);
     return json;

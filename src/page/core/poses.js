@@ -56,6 +56,12 @@ export function posesOf(part) {
   }));
 }
 
+/** Numbers of the targets that a pose shows; of a board's many corners how many. */
+export function seenBy({ targets }, { scene }) {
+  const corners = scene?.views ? scene.views.corners.length * scene.views.cameras.length : 0;
+  return corners > 12 ? `${targets.length} of ${corners}` : targets.join(' ');
+}
+
 /** The same of those that a plan has to judge the calibration on. */
 export const posesToVerify = ({ document }) => planned(document, Array.isArray(document.verification) ? document.verification : []);
 

@@ -1,29 +1,10 @@
-import {
-  Box3,
-  Color,
-  DirectionalLight,
-  HemisphereLight,
-  InstancedMesh,
-  Line,
-  Matrix4,
-  MeshBasicMaterial,
-  OrthographicCamera,
-  PerspectiveCamera,
-  Scene,
-  SphereGeometry,
-  Vector3,
-  WebGLRenderer,
-  BufferGeometry,
-} from 'three';
+import { Box3, DirectionalLight, HemisphereLight, OrthographicCamera, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { el } from '../core/dom.js';
 import { short } from '../core/format.js';
-import { apply, flange, frames, origin, way } from '../core/kinematics.js';
 import { colour, isOnPaper, onTheme } from '../core/theme.js';
 import { ticks } from './canvas.js';
-import { drawCell } from './cell.js';
-import { Robot } from './robot.js';
-import { lines, makeMaterials } from './solids.js';
+import { makeMaterials } from './solids.js';
 
 const palette = {
   link: 'robot',
@@ -46,63 +27,40 @@ export function makeCanvas() {
   return context ? { canvas, context } : null;
 }
 
-/** Draws a scene with its robot in one configuration at a time. Renders on demand only. */
+/** Draws what it is given in 3D, with labels. Renders on demand only. */
 export class Viewer {
-  constructor({ canvas, context }, holder, scene, poses, colours) {
-    this.canvas = canvas;
-    this.holder = holder;
-    this.data = scene;
-    this.poses = poses;
+  /** `up` and `front`: directions to look along; `size` of what is drawn, m. */
+  constructor({ canvas, context }, holder, { up, front, size }) {
+    Object.assign(this, { canvas, holder, size, up: new Vector3(...up), front: new Vector3(...front), labels: [] });
     this.materials = makeMaterials();
     this.renderer = new WebGLRenderer({ canvas, context, antialias: true });
     this.renderer.debug.checkShaderErrors = false;
     this.scene = new Scene();
-    this.cameras = { perspective: new PerspectiveCamera(32, 1, 0.01, 500), parallel: new OrthographicCamera() };
+    this.cameras = { perspective: new PerspectiveCamera(32, 1, 0.01 * Math.min(size, 1), 500), parallel: new OrthographicCamera() };
     this.camera = this.cameras.perspective;
-    this.up = new Vector3(...(typeof scene.floor_z === 'number' ? [0, 0, 1] : [2, 6, 10].map((k) => scene.world_from_base[k])));
     for (const camera of Object.values(this.cameras)) camera.up.copy(this.up);
-    this.size = this.measure();
-    this.robot = new Robot(scene, this.materials, this.size);
-    const cell = drawCell(scene, this.materials, this.size);
-    this.scene.add(this.robot.group, cell.group);
     this.addLights();
-    this.addPoses(colours);
-    this.labels = cell.labels.map(({ world, text }) => this.addLabel(text, world));
-    this.current = this.addLabel('', [0, 0, 0]);
-    this.current.label.classList.add('label-pose');
-    this.labels.push(this.current);
+  }
+
+  /** Shows what was added, so that the points `whole` are in view, or `near` of them. */
+  open(whole, near = whole) {
+    [this.whole, this.near] = [whole, near].map((points) => points.map((point) => new Vector3(...point)));
     this.scale = el('span', { class: 'scale-bar' });
-    holder.append(this.scale);
-    this.controls = new OrbitControls(this.camera, canvas);
+    this.holder.append(this.scale);
+    this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.addEventListener('change', () => this.request());
     [this.aspect, this.fitted, this.tall] = [1, 1, this.size];
     this.resize();
     this.look('all');
     onTheme(() => this.recolour());
-    new ResizeObserver(() => this.resize()).observe(holder);
-  }
-
-  /** Points of the robot in these poses and of what else is to be in view; gives the robot's size, m. */
-  measure() {
-    const places = this.poses.flatMap((pose) => frames(this.data, pose.joints).map(origin));
-    this.near = places.map((place) => new Vector3(...place));
-    const others = [
-      this.data.instrument?.position,
-      ...(this.data.boxes ?? []).filter((one) => one.kind === 'keep_out').map((one) => origin(one.world_from_box)),
-    ];
-    const solids = (this.data.capsules ?? [])
-      .filter((one) => one.kind === 'keep_out')
-      .flatMap(({ from, to, radius }) =>
-        [from, to].flatMap((end) => [-radius, radius].map((off) => apply(this.data.world_from_base, end).map((value) => value + off))),
-      );
-    this.whole = [...this.near, ...[...others, ...solids].filter(Boolean).map((place) => new Vector3(...place))];
-    return Math.max(new Box3().setFromPoints(this.near).getSize(new Vector3()).length() / 2, 0.05);
+    new ResizeObserver(() => this.resize()).observe(this.holder);
   }
 
   addLabel(text, world) {
     const label = el('span', { class: 'label', 'aria-hidden': 'true' }, text);
     this.holder.append(label);
-    return { label, world: new Vector3(...world) };
+    this.labels.push({ label, world: new Vector3(...world) });
+    return this.labels.at(-1);
   }
 
   addLights() {
@@ -114,36 +72,9 @@ export class Viewer {
     this.scene.add(sky, sun);
   }
 
-  /** A dot where each pose has the first target, and the way between them. */
-  addPoses(colours) {
-    const at = this.data.targets?.positions?.[0] ?? [0, 0, 0];
-    const place = (joints) => apply(flange(this.data, joints), at);
-    this.places = this.poses.map((pose) => place(pose.joints));
-    const isMany = this.poses.length > 100;
-    this.dots = new InstancedMesh(
-      new SphereGeometry((isMany ? 0.012 : 0.02) * this.size, isMany ? 8 : 16, isMany ? 6 : 10),
-      new MeshBasicMaterial({}),
-      this.poses.length,
-    );
-    this.places.forEach((point, k) => {
-      this.dots.setMatrixAt(k, new Matrix4().makeTranslation(...point));
-    });
-    this.colourDots = () => {
-      this.places.forEach((unused, k) => this.dots.setColorAt(k, new Color(colours(k))));
-      this.dots.instanceColor.needsUpdate = true;
-    };
-    this.scene.add(this.dots);
-    if (this.poses.length < 2 || !this.poses[0].hasWay) return;
-    const points = this.poses
-      .slice(1)
-      .flatMap((pose, k) => way(this.poses[k].joints, pose.joints, pose.via, 10).map((joints) => new Vector3(...place(joints))));
-    this.scene.add(new Line(new BufferGeometry().setFromPoints(points), this.materials.way));
-  }
-
   recolour() {
     this.resize();
     for (const [name, variable] of Object.entries(palette)) this.materials[name].color.set(colour(variable));
-    this.colourDots();
     this.renderer.setClearColor(colour('stage'));
     // At once: paper does not wait.
     this.render();
@@ -156,27 +87,30 @@ export class Viewer {
     this.canvas.after(this.copy);
   }
 
-  /** From the side where robot and instrument stand apart `all`, or the `robot` alone; `front`, `side` and `top` as drawings: parallel, of all, with a scale. */
-  look(from) {
-    const { up } = this;
-    const front = new Vector3(...[0, 4, 8].map((k) => this.data.world_from_base[k]));
+  /** Where to look from at all of it. */
+  oblique() {
+    const { up, front } = this;
+    return front.clone().addScaledVector(new Vector3().crossVectors(up, front), -1.1).normalize().addScaledVector(up, 0.42);
+  }
+
+  /** `all` obliquely, or what is `near`, or other `points`; `front`, `side` and `top` as drawings: parallel, of all, with a scale. */
+  look(from, points = from === 'near' ? this.near : this.whole, room = 0.24 * this.size) {
+    const { up, front } = this;
     const side = new Vector3().crossVectors(up, front).normalize();
-    const oblique = this.beside(front).addScaledVector(up, 0.42);
-    const direction = { all: oblique, robot: oblique, front, side: side.negate(), top: up.clone().addScaledVector(front, -0.002) }[from].normalize();
-    this.camera = this.cameras[from === 'all' || from === 'robot' ? 'perspective' : 'parallel'];
+    const parallel = { front, side: side.negate(), top: up.clone().addScaledVector(front, -0.002) }[from];
+    this.camera = this.cameras[parallel ? 'parallel' : 'perspective'];
     this.controls.object = this.camera;
-    this.fit(from === 'robot' ? this.near : this.whole, direction);
+    this.fit(points, (parallel ?? this.oblique()).clone().normalize(), room);
     this.resize();
     this.controls.update();
     this.request();
   }
 
-  /** Stands where all points are in view, in the middle of it. */
-  fit(points, direction) {
+  /** Stands where all points are in view, in the middle of it, with room around them, m. */
+  fit(points, direction, room) {
     const { camera, cameras } = this;
     const centre = new Box3().setFromPoints(points).getCenter(new Vector3());
     const half = Math.tan((cameras.perspective.fov * Math.PI) / 360);
-    const room = 0.24 * this.size;
     let away = 4 * this.size;
     for (let k = 0; k < 6; ++k) {
       camera.position.copy(centre).addScaledVector(direction, away);
@@ -196,42 +130,6 @@ export class Viewer {
     camera.position.copy(centre).addScaledVector(direction, away);
     // A parallel view cuts nothing off before or behind.
     Object.assign(cameras.parallel, { zoom: 1, near: -100 * this.size, far: 100 * this.size });
-  }
-
-  /** A level direction from which robot and instrument stand side by side. */
-  beside(front) {
-    const { up } = this;
-    const at = this.data.instrument?.position;
-    if (!at) return front.clone().addScaledVector(new Vector3().crossVectors(up, front), -1.1).normalize();
-    const between = new Vector3(...at).sub(new Vector3(...origin(this.data.world_from_base)));
-    const across = new Vector3().crossVectors(up, between).normalize();
-    // From the side that the robot reaches to rather than from behind it, and a little from the instrument.
-    const middle = new Box3().setFromPoints(this.near).getCenter(new Vector3());
-    const isFront = middle.sub(new Vector3(...origin(this.data.world_from_base))).dot(across) >= 0;
-    return across
-      .multiplyScalar(isFront ? 1 : -1)
-      .addScaledVector(between.normalize(), 0.55)
-      .normalize();
-  }
-
-  /** The robot in a configuration, and the name of the pose if it is one. */
-  show(joints, seen, name) {
-    const targets = this.robot.show(joints, seen ?? null);
-    if (this.sight) {
-      this.scene.remove(this.sight);
-      this.sight.geometry.dispose();
-    }
-    const from = this.data.instrument?.position;
-    this.sight = lines(from ? targets.filter((one) => one.isSeen).flatMap((one) => [from, one.world]) : [], this.materials.sight);
-    this.scene.add(this.sight);
-    this.current.world.set(...(targets[0]?.world ?? origin(flange(this.data, joints))));
-    this.current.label.textContent = name;
-    this.request();
-  }
-
-  showFrames(isShown) {
-    this.robot.frameAxes.visible = isShown;
-    this.request();
   }
 
   resize() {
@@ -260,7 +158,7 @@ export class Viewer {
     this.renderer.render(this.scene, this.camera);
     const { clientWidth: width, clientHeight: height } = this.holder;
     this.showScale(height);
-    for (const { label, world } of this.labels ?? []) {
+    for (const { label, world } of this.labels) {
       const at = world.clone().project(this.camera);
       label.hidden = Math.abs(at.x) > 0.98 || Math.abs(at.y) > 0.98 || at.z > 1;
       label.style.transform = `translate(-50%, -50%) translate(${((at.x + 1) / 2) * width}px, ${((1 - at.y) / 2) * height}px)`;

@@ -2,6 +2,7 @@ import { el } from '../core/dom.js';
 import { figure, lead } from '../core/figure.js';
 import { count, fixed, short } from '../core/format.js';
 import { table } from '../core/table.js';
+import { kinds } from '../core/views.js';
 import { cellsOf, drawImage, exaggeration, roundBelow } from '../draw/image.js';
 import { legend } from '../draw/legend.js';
 
@@ -10,14 +11,6 @@ export const title = 'Image';
 const hasPlaces = (of) => of?.images?.length > 0 && of.readings?.place !== undefined;
 
 export const isShown = ({ residuals, expected }) => hasPlaces(residuals) || hasPlaces(expected);
-
-/** Poses by what they were for. */
-const kinds = [
-  ['residuals', 'calibrated with', 'accent'],
-  ['validation', 'validation', 'fourth'],
-  ['verification', 'verification', 'third'],
-  ['left_out', 'not in plan', 'needed'],
-];
 
 /** Corners that a camera has seen or, of a plan, shall see, and their residuals, px. */
 export function cornersOf({ readings: { camera, place, residual } }, index) {

@@ -1,14 +1,17 @@
 import { el } from '../core/dom.js';
-import { behind, figure, lead } from '../core/figure.js';
+import { behind, figure, lead, note } from '../core/figure.js';
 import { count, fixed, mm } from '../core/format.js';
 import { checkFlange } from '../core/kinematics.js';
-import { cellOf, columnTitle, posesOf, posesToVerify, valueOf, wayOf } from '../core/poses.js';
+import { cellOf, columnTitle, posesOf, posesToVerify, seenBy, valueOf, wayOf } from '../core/poses.js';
 import { rmsByConfiguration } from '../core/residuals.js';
 import { table } from '../core/table.js';
 import { colour, ramp } from '../core/theme.js';
+import { kinds, viewsOf } from '../core/views.js';
 import { colourBar } from '../draw/colour_bar.js';
+import { legend } from '../draw/legend.js';
 import { parallelCoordinates } from '../draw/parallel.js';
-import { makeCanvas, Viewer } from '../draw/viewer.js';
+import { RobotViewer } from '../draw/robot_viewer.js';
+import { makeCanvas } from '../draw/viewer.js';
 import { player } from './player.js';
 
 export const title = 'Poses';
@@ -37,7 +40,7 @@ function colouring(part, poses) {
   return { colours, bar, hasNeeded: numbers.includes(null) && part.document.pose_values };
 }
 
-function poseTable(caption, poses) {
+function poseTable(caption, poses, part) {
   const isPlan = poses[0].hasWay;
   const header = ['pose', ...poses[0].keys.map(columnTitle)];
   if (poses.some((pose) => pose.value !== undefined)) header.push('value/mm');
@@ -49,7 +52,7 @@ function poseTable(caption, poses) {
   const rows = poses.map((pose) => {
     const row = [pose.id, ...pose.all.map((value, k) => cellOf(pose.keys[k], value))];
     if (header.includes('value/mm')) row.push(pose.value === undefined ? '-' : valueOf(pose));
-    if (header.includes('targets seen')) row.push((pose.targets ?? []).join(' '));
+    if (header.includes('targets seen')) row.push(pose.targets ? seenBy(pose, part) : '');
     if (header.includes('socket')) row.push((pose.touched ?? []).join(' '));
     if (isPlan) row.push(wayOf(pose));
     if (hasNearest) row.push(pose.nearest ?? '');
@@ -113,11 +116,11 @@ function jointTable(joints, poses) {
   };
 }
 
-function describe(poses, k) {
+function describe(poses, k, part) {
   const pose = poses[k];
   const parts = [`Pose ${pose.id}, ${k + 1} of ${poses.length}`];
   if (pose.value !== undefined) parts.push(pose.value === null ? 'needed' : `value ${mm(pose.value)} mm`);
-  if (pose.targets) parts.push(pose.targets.length > 0 ? `targets seen: ${pose.targets.join(' ')}` : 'no target seen');
+  if (pose.targets) parts.push(pose.targets.length > 0 ? `targets seen: ${seenBy(pose, part)}` : 'no target seen');
   if (pose.touched) parts.push(`socket: ${pose.touched.join(' ')}`);
   if (pose.nearest) parts.push(`nearest: ${pose.nearest.replace(' ', ' mm ')}`);
   if (pose.blocked) parts.push('no free way there was found');
@@ -125,20 +128,44 @@ function describe(poses, k) {
   return parts.join(' \u00b7 ');
 }
 
+/** A box to tick that shows something. */
+function tick(name, show) {
+  const box = el('input', { type: 'checkbox', checked: true });
+  box.addEventListener('change', () => show(box.checked));
+  return el('label', {}, box, name);
+}
+
 function views(viewer) {
-  const names = { all: 'Whole', robot: 'Robot', front: 'Front', side: 'Side', top: 'Top' };
-  const frames = el('input', { type: 'checkbox', checked: true });
-  frames.addEventListener('change', () => viewer.showFrames(frames.checked));
+  const names = { all: 'Whole', near: 'Robot', front: 'Front', side: 'Side', top: 'Top' };
   return el(
     'div',
     { class: 'views' },
     Object.entries(names).map(([key, name]) => el('button', { type: 'button', onclick: () => viewer.look(key) }, name)),
-    el('label', {}, frames, 'Frames'),
+    viewer.views ? el('button', { type: 'button', onclick: () => viewer.lookAtViews() }, 'Camera and board') : null,
+    tick('Frames', (isShown) => viewer.showFrames(isShown)),
+    viewer.views ? tick('Views', (isShown) => viewer.showViews(isShown)) : null,
   );
 }
 
+/** What is drawn of a camera's views, in a sentence. */
+function viewsNote({ scene: { views } }, list) {
+  const rig = views.cameras.length > 1;
+  const what =
+    views.on_flange === 'camera'
+      ? `the board with its corners and, as a pyramid towards what it sees, ${rig ? 'each camera that sees the board' : 'the camera'} at each view`
+      : `${rig ? `the ${views.cameras.length} cameras` : 'the camera'} as ${rig ? 'pyramids' : 'a pyramid'} towards what ${rig ? 'they see' : 'it sees'}, and the board's outline at each view`;
+  const odd = list.filter((one) => one.contradicts).map((one) => one.id);
+  return note(`Drawn are ${what}.${odd.length > 0 ? ` Orange: what contradicts the other views (${odd.join(', ')}).` : ''}`);
+}
+
+/** Other poses than those of the part, where some are drawn. */
+function viewsLegend(list) {
+  const others = kinds.slice(1).filter(([key]) => list.some((one) => one.kind === key));
+  return others.length > 0 ? legend(others.map(([, label, name]) => ({ label, colour: name }))) : null;
+}
+
 /** Fills the stage with the robot in 3D where there is WebGL, with a sentence else; gives the viewer. */
-function fillStage(stage, part, poses, colours) {
+function fillStage(stage, part, poses, colours, shown) {
   const made = makeCanvas();
   stage.dataset.ready = 'true';
   if (!made) {
@@ -148,7 +175,7 @@ function fillStage(stage, part, poses, colours) {
   }
   made.canvas.setAttribute('aria-label', `Robot in 3D: ${part.name}. Drag to turn, wheel to come nearer; arrow keys step through the poses.`);
   stage.append(made.canvas);
-  const viewer = new Viewer(made, stage, part.scene, poses, colours);
+  const viewer = new RobotViewer(made, stage, part.scene, poses, colours, shown);
   stage.after(views(viewer));
   return viewer;
 }
@@ -159,6 +186,7 @@ export function render(part) {
   const toVerify = posesToVerify(part);
   const { colours, bar, hasNeeded } = colouring(part, poses);
   const stage = part.scene ? el('div', { class: 'stage' }) : null;
+  const shown = viewsOf(part);
   const coordinates = parallelCoordinates(joints, poses, colours, `Joints of ${count(poses.length, 'pose')} between their limits, as parallel coordinates`);
   const one = jointTable(joints, poses);
   let viewer = null;
@@ -167,17 +195,19 @@ export function render(part) {
     stage ?? coordinates.element,
     (k, onTheWay) => {
       one.show(onTheWay ?? poses[k].joints);
-      viewer?.show(onTheWay ?? poses[k].joints, onTheWay ? [] : poses[k].targets, onTheWay ? '' : poses[k].id);
+      if (onTheWay) viewer?.show(onTheWay, [], '', []);
+      else viewer?.show(poses[k].joints, shown ? null : poses[k].targets, poses[k].id, shown?.[k].cameras);
       if (!onTheWay) coordinates.show(k);
     },
-    (k) => describe(poses, k),
+    (k) => describe(poses, k, part),
   );
   const side = el(
     'div',
     { class: 'stage-side' },
     one.element,
     bar,
-    hasNeeded ? el('p', { class: 'note' }, 'Red: without this pose parameters are left unidentified.') : null,
+    shown ? [viewsLegend(shown), viewsNote(part, shown)] : null,
+    hasNeeded ? note('Red: without this pose parameters are left unidentified.') : null,
   );
   const together = el('div', { class: 'stage-row' }, stage ? el('div', {}, stage) : null, side);
   const element = el(
@@ -187,10 +217,10 @@ export function render(part) {
     steps.bar,
     together,
     figure('Joint values of all poses between the limits; the current pose is dark.', coordinates.element, [rangeTable(joints, poses)]),
-    behind([poseTable('Poses', poses)], `All ${count(poses.length, 'pose')} as a table`),
+    behind([poseTable('Poses', poses, part)], `All ${count(poses.length, 'pose')} as a table`),
     toVerify.length > 0
       ? behind(
-          [poseTable('Poses to judge the calibration on', toVerify)],
+          [poseTable('Poses to judge the calibration on', toVerify, part)],
           `${count(toVerify.length, 'pose')} more, to judge the calibration on and not to calibrate with`,
         )
       : null,
@@ -200,7 +230,7 @@ export function render(part) {
     // After the page stands: to make a context and its programs takes a while.
     requestAnimationFrame(() =>
       requestAnimationFrame(() => {
-        viewer = fillStage(stage, part, poses, colours);
+        viewer = fillStage(stage, part, poses, colours, shown);
         steps.go(0);
       }),
     );

@@ -6,6 +6,7 @@
 
 #include "measurement/places.hpp"
 #include "posewise/calibrator/identification.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/model/error_terms.hpp"
 
 namespace posewise {
@@ -101,6 +102,30 @@ void add_cell(Scene& scene, const Campaign& campaign, const std::vector<Index>& 
     }
 }
 
+/// Without a stated size the image is taken to be centred about the principal point; a lens that is
+/// to be found from the views is taken to see 53 deg.
+std::array<double, 4> window_of(const PlacedCamera& camera) {
+    const Intrinsics& lens = camera.intrinsics;
+    if (!(lens.fx > 0 && lens.fy > 0)) return {-0.5, -0.5, 0.5, 0.5};
+    const Vector2d size = camera.image ? *camera.image : Vector2d(2 * lens.cx, 2 * lens.cy);
+    return {-lens.cx / lens.fx, -lens.cy / lens.fy, (size.x() - lens.cx) / lens.fx,
+            (size.y() - lens.cy) / lens.fy};
+}
+
+std::optional<SceneViews> views_of(const Campaign& campaign, const Parameters& parameters) {
+    const auto* const sensor = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
+    if (sensor == nullptr) return std::nullopt;
+    SceneViews views{sensor->setup().is_on_flange, sensor->place(parameters.sensor), {}, {}};
+    for (Index c = 0; c < sensor->camera_count(); ++c) {
+        const PlacedCamera camera = sensor->placed(c, parameters.sensor);
+        views.cameras.push_back({camera.in_first, window_of(camera)});
+    }
+    for (Index k = 0; k < sensor->corner_count(); ++k) {
+        views.corners.push_back(sensor->corner(k, parameters.sensor));
+    }
+    return views;
+}
+
 }  // namespace
 
 Scene make_scene(const Campaign& campaign, const Parameters& parameters) {
@@ -117,6 +142,7 @@ Scene make_scene(const Campaign& campaign, const Parameters& parameters) {
     if (const auto position = instrument_position(campaign)) {
         scene.instrument = SceneInstrument{"tracker", *position};
     }
+    scene.views = views_of(campaign, parameters);
     return scene;
 }
 
