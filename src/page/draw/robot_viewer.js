@@ -76,7 +76,7 @@ export class RobotViewer extends Viewer {
   addViews(views, colours) {
     this.views = new CameraViews(this.data.views, views, colours, this.size);
     this.scene.add(this.views.group);
-    for (const { id, place, contradicts } of views) if (contradicts) this.addLabel(`${id} contradicts`, origin(place));
+    for (const { id, place, contradicts } of views) if (contradicts) this.addLabel(`${id} contradicts`, origin(place)).label.classList.add('label-pose');
   }
 
   recolour() {

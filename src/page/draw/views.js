@@ -17,6 +17,9 @@ import { axes, place } from './solids.js';
 
 const geometryOf = (points) => new BufferGeometry().setAttribute('position', new Float32BufferAttribute(points.flat(), 3));
 
+/** How many points pyramidOf() has. */
+const pyramidEnds = 20;
+
 /** Faces of the pyramid of these edges. */
 const facesOf = (edges) => [0, 4, 8, 12].flatMap((k) => [edges[k], edges[k + 1], edges[k + 3]]);
 
@@ -38,7 +41,7 @@ export function boardShape(corners, line, dots) {
   return group;
 }
 
-export const clearFace = () => new MeshBasicMaterial({ transparent: true, opacity: 0.22, side: DoubleSide, depthWrite: false });
+export const clearFace = () => new MeshBasicMaterial({ transparent: true, opacity: 0.25, side: DoubleSide, depthWrite: false });
 
 /** Cameras and board in the world: what stands, what is on the flange at each view, and the one that is shown now. */
 export class CameraViews {
@@ -51,6 +54,7 @@ export class CameraViews {
       dots: new PointsMaterial({ size: 3, sizeAttenuation: false }),
       now: new LineBasicMaterial({}),
       face: clearFace(),
+      odd: clearFace(),
     };
     this.addStanding();
     this.addViews();
@@ -93,7 +97,9 @@ export class CameraViews {
     const geometry = geometryOf(points);
     geometry.setAttribute('color', new Float32BufferAttribute(new Float32Array(3 * points.length), 3));
     const lines = new LineSegments(geometry, new LineBasicMaterial({ vertexColors: true }));
-    this.group.add(lines);
+    const odd = this.isCamera ? this.views.filter((view) => view.contradicts) : [];
+    const faces = odd.flatMap((view) => this.edgesAt(view)).flatMap((unused, k, all) => (k % pyramidEnds === 0 ? facesOf(all.slice(k, k + pyramidEnds)) : []));
+    this.group.add(lines, new Mesh(geometryOf(faces), this.materials.odd));
     this.points = points;
     this.paint = (Colour) => {
       const { color } = geometry.attributes;
@@ -151,6 +157,7 @@ export class CameraViews {
     this.materials.dots.color.set(colour('ink-soft'));
     this.materials.now.color.set(colour('ink'));
     this.materials.face.color.set(colour('accent'));
+    this.materials.odd.color.set(colour('second'));
     this.paint(Colour);
   }
 }

@@ -42,7 +42,13 @@ const studyRows = ({ models, unit = 'mm' }) =>
     model.rows.flatMap((row) =>
       row.planned
         .filter((one) => isNumber(one[`held_out_rms_${unit}`]) && isNumber(one[`expected_rms_${unit}`]))
-        .map((one) => ({ model: model.name, count: row.pose_count, criterion: one.criterion, predicted: one[`expected_rms_${unit}`], found: one[`held_out_rms_${unit}`] })),
+        .map((one) => ({
+          model: model.name,
+          count: row.pose_count,
+          criterion: one.criterion,
+          predicted: one[`expected_rms_${unit}`],
+          found: one[`held_out_rms_${unit}`],
+        })),
     ),
   );
 

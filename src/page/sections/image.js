@@ -56,7 +56,7 @@ function expectedFigure(expected, index) {
   const size = sizeOf(image, corners);
   const label = `${nameOf(expected.images, index)}${count(corners.length, 'corner')} expected in ${describe(image, size)}`;
   return figure(
-    `${label}, if the robot is as the campaign states it. The darker a cell, the more corners it has.`,
+    `${label}, if the robot is as the campaign states it. The greyer a cell, the more corners it has.`,
     drawImage({ label, size, cells: cellsIn(image), sets: [{ corners, colour: 'accent' }], times: 1 }),
     [cellTable('Corners expected in each cell of the image', image)],
   );
@@ -77,7 +77,7 @@ function imageFigure(residuals, index) {
   const others = sets.reduce((sum, { corners }) => sum + corners.length, -used);
   const label = `${nameOf(residuals.images, index)}${count(used, 'corner')} in ${describe(image, size)}, ${fixed(image.rms_px, 2)} px RMS off the place predicted`;
   return figure(
-    `${label}${others > 0 ? `; ${others} of other poses` : ''}. A dot is where a corner was seen; the line is its residual, from the place predicted towards the one seen, drawn ${short(times)} times as long. The darker a cell, the more corners were calibrated with.`,
+    `${label}${others > 0 ? `; ${others} of other poses` : ''}. A dot is where a corner was seen; the line is its residual, from the place predicted towards the one seen, drawn ${short(times)} times as long. The greyer a cell, the more corners were calibrated with.`,
     el(
       'div',
       {},

@@ -35,9 +35,7 @@ function studyTable(model, { splits, simulated }, keys) {
   const rows = model.rows.map(({ pose_count: number, planned, random, splits: finished }) => [
     String(number),
     ...planned.flatMap((one) =>
-      splits > 0
-        ? [mm(one[keys.found]), mm(one[keys.expected]), fixed(one.against_random?.ratio, 2), interval(one.against_random)]
-        : [mm(one[keys.found])],
+      splits > 0 ? [mm(one[keys.found]), mm(one[keys.expected]), fixed(one.against_random?.ratio, 2), interval(one.against_random)] : [mm(one[keys.found])],
     ),
     ...[10, 50, 90].map((part) => mm(random?.[keys.quantile(part)])),
     String(random?.subsets ?? 0),
