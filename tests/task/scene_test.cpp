@@ -155,7 +155,7 @@ TEST(MakeScene, HasCamerasAndBoard) {
     EXPECT_TRUE(views.cameras[2].in_first.isApprox(sensor.placed(2, unknowns).in_first));
     EXPECT_EQ(views.corners, setup.corners);
     // Edges of the image by a pinhole; without a size it is centred.
-    const Intrinsics pinhole{1210, 1190, 655, 470};
+    const Intrinsics pinhole{1210, 1190, 655, 470, Distortion::None, {}};
     const auto& seen = views.cameras[0].window;
     EXPECT_TRUE(project(pinhole, {seen[0], seen[1], 1}).isZero(1e-9));
     EXPECT_TRUE(project(pinhole, {seen[2], seen[3], 1}).isApprox(*setup.image));
