@@ -213,6 +213,9 @@ TEST(ToPage, HasCamerasBoardAndWhereTheyAreAtOtherPoses) {
     PagePart part = part_of("camera");
     part.scene = make_scene(campaign, campaign.nominal);
     part.residuals = residuals();
+    for (ReadingResidual& one : part.residuals->readings) {
+        one.nominal = one.standardised = one.calibrated;
+    }
     part.residuals->judged = {{"validation", residuals()}, {"left_out", residuals()}};
     part.residuals->judged[0].second.has_own_set_up = true;
     const json shown = json::parse(to_json(std::vector<PagePart>{part}))["parts"][0];
