@@ -8,7 +8,6 @@
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/doubts.hpp"
-#include "posewise/task/study.hpp"
 #include "support/robots.hpp"
 #include "support/sensors.hpp"
 
@@ -79,9 +78,45 @@ TEST(CameraDoubt, SaysNothingOfTheBoardWhereSomethingElseIsWrong) {
     EXPECT_LT(doubt->scaled_misfit, doubt->misfit);
 }
 
-TEST(MeasuredStudy, IsRefusedWhereReadingsArePixels) {
+/// What is said of a campaign that states these intrinsics as known.
+std::string said_of(const Intrinsics& stated) {
     const auto& [campaign, measured] = good();
-    EXPECT_THROW(study(campaign, measured, {}), InputError);
+    CameraSetup setup = setup_of(campaign);
+    setup.intrinsics = stated;
+    const Campaign wrong = with_setup(campaign, setup);
+    const auto misfit = find_misfit(wrong, measured, registered(wrong, measured));
+    return misfit ? describe_misfit(wrong, *misfit) : "";
+}
+
+TEST(CameraMisfit, NamesIntrinsicsOfAnotherResolution) {
+    const Intrinsics right = setup_of(good().campaign).intrinsics;
+    for (const double factor : {0.5, 2.0, 1 / 1.25}) {
+        Intrinsics scaled = right;
+        scaled.fx /= factor;
+        scaled.fy /= factor;
+        scaled.cx = (right.cx + 0.5) / factor - 0.5;
+        scaled.cy = (right.cy + 0.5) / factor - 0.5;
+        const std::string said = said_of(scaled);
+        const std::string before = "as those of an image ";
+        const std::size_t at = said.find(before);
+        ASSERT_NE(at, std::string::npos) << factor << ": " << said;
+        EXPECT_NEAR(std::stod(said.substr(at + before.size())), factor, 0.01 * factor);
+    }
+}
+
+TEST(CameraMisfit, NamesIntrinsicsOfAnImageTurnedByAQuarter) {
+    const CameraSetup setup = setup_of(good().campaign);
+    const Intrinsics right = setup.intrinsics;
+    for (const bool is_right : {true, false}) {
+        Intrinsics before = right;  // of the image that was turned to become this one
+        std::swap(before.fx, before.fy);
+        before.cx = is_right ? right.cy : setup.image->y() - 1 - right.cy;
+        before.cy = is_right ? setup.image->x() - 1 - right.cx : right.cx;
+        const std::string said = said_of(before);
+        EXPECT_NE(said.find(is_right ? "turned by a quarter to the right" : "to the left"),
+                  std::string::npos)
+            << said;
+    }
 }
 
 TEST(CameraDoubt, NamesTheScatterOfCorners) {

@@ -241,6 +241,12 @@ struct PlaceDoubt {
 /// stated, is not checked.
 std::vector<PlaceDoubt> find_place_doubts(const Campaign& campaign, const Parameters& registered);
 
+/// Intrinsic parameters that fit far better than those that are stated as known.
+struct OtherImage {
+    std::string words;    ///< which image these are of: "an image 2 times as large"
+    double distance = 0;  ///< by which the nominal robot then misses half of the corners, 1000 px
+};
+
 /// The nominal robot explains its own measurements to about its expected error, but not those of
 /// another robot.
 struct Misfit {
@@ -252,6 +258,7 @@ struct Misfit {
     std::optional<Index> camera{};
     bool is_between_cameras = false;  ///< each by itself is missed far less
     double others = 0;                ///< by which the other cameras, or each by itself, are missed
+    std::optional<OtherImage> image{};  ///< if the intrinsics look like those of another image
 };
 
 /// Nothing if the nominal robot explains the measurements, or misses them by less than ten expected

@@ -129,6 +129,10 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
             json["misfit"]["others_px"] = 1e3 * misfit->others;
             json["misfit"]["is_between_cameras"] = misfit->is_between_cameras;
         }
+        if (misfit->image) {
+            json["misfit"]["image"] = misfit->image->words;
+            json["misfit"]["with_image_px"] = 1e3 * misfit->image->distance;
+        }
         if (misfit->camera) json["misfit"]["camera"] = *misfit->camera + 1;
         if (const auto& reading = misfit->reading) {
             json["misfit"]["reversed"] = reading->reversed;

@@ -160,7 +160,8 @@ void look(const Work& work, Calibration& result) {
         doubts.look = look_at_residuals(work.campaign, work.used, result.estimate);
     }
     if (!doubts.misfit && !doubts.gross_error) return;
-    if (work.campaign.sensor->has_pixels() && doubts.misfit && doubts.misfit->reading) return;
+    const bool is_explained = doubts.misfit && (doubts.misfit->reading || doubts.misfit->image);
+    if (work.campaign.sensor->has_pixels() && is_explained) return;
     doubts.look.shifted = find_shifted_rows(work.campaign, work.used);
     if (!doubts.look.shifted && !doubts.look.outlying) {
         doubts.look.outlying = find_gross_configurations(work.campaign, work.used, result.estimate);

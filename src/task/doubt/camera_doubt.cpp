@@ -3,6 +3,7 @@
 
 #include "core/decompositions.hpp"
 #include "core/statistics.hpp"
+#include "other_image.hpp"
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/jacobian/identification.hpp"
@@ -57,28 +58,10 @@ void find_board_factor(const Campaign& campaign, const CameraSensor& camera,
     if (has_squares) doubt.square = (setup.corners[1] - setup.corners[0]).norm();
 }
 
-/// The middle of a camera's image or, if its size is not stated, of what it sees; and its extents,
-/// px.
-std::array<Vector2d, 2> image_of(const CameraSensor& sensor, Index camera,
-                                 const Measurements& measured) {
-    const auto& image = sensor.camera(camera).image;
-    if (image) return {*image / 2, *image};
-    Vector2d least = Vector2d::Constant(INFINITY), most = -least;
-    for (Index i = 0; i < measured.is_seen.rows(); ++i) {
-        for (const Index k : targets_seen(measured.is_seen.row(i))) {
-            if (k / sensor.corner_count() != camera) continue;
-            const Vector2d place = 1e3 * measured.observations.row(i).segment<2>(2 * k).transpose();
-            least = least.cwiseMin(place);
-            most = most.cwiseMax(place);
-        }
-    }
-    return {(least + most) / 2, most - least};
-}
-
 void check_principal_point(const CameraSensor& camera, const Measurements& measured,
                            const VectorXd& unknowns, CameraDoubt& doubt) {
     for (Index c = 0; c < camera.camera_count() && !doubt.principal_point; ++c) {
-        const auto [middle, extents] = image_of(camera, c, measured);
+        const auto [middle, extents] = detail::image_of(camera, c, measured);
         const Intrinsics intrinsics = camera.placed(c, unknowns).intrinsics;
         const Vector2d off = Vector2d(intrinsics.cx, intrinsics.cy) - middle;
         constexpr double far = 0.25;

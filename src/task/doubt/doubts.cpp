@@ -225,7 +225,8 @@ Doubts find_doubts(const Campaign& campaign, const Measurements& measurements,
         doubts.misfit = find_misfit(campaign, measurements, registered);
         const auto& misfit = doubts.misfit;
         // All else follows from it.
-        if (misfit && (misfit->reading || misfit->camera || misfit->is_between_cameras)) {
+        if (misfit &&
+            (misfit->reading || misfit->image || misfit->camera || misfit->is_between_cameras)) {
             return doubts;
         }
     }

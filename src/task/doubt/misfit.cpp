@@ -7,6 +7,8 @@
 #include "core/format.hpp"
 #include "core/statistics.hpp"
 #include "gross_errors.hpp"
+#include "nominal_residuals.hpp"
+#include "other_image.hpp"
 #include "plane_doubts.hpp"
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/core/errors.hpp"
@@ -19,12 +21,6 @@ namespace {
 
 /// From here on other readings are tried: of a wrist reversed joints may do no more.
 constexpr double doubtful_errors = 1;
-
-/// Of residuals as mean_residuals() gives them, the median: some may be grossly wrong.
-double median_distance(const RowMatrixXd& residuals) {
-    const auto coordinates = residuals.leftCols(std::min<Index>(3, residuals.cols()));
-    return quantile(coordinates.rowwise().norm(), 0.5, detail::QuantileRule::Upper);
-}
 
 std::string describe(const Plane& plane) {
     return fmt::format(
@@ -49,18 +45,25 @@ bool are_orientations_off(const Campaign& campaign, const RowMatrixXd& residuals
 
 }  // namespace
 
+double detail::median_distance(const RowMatrixXd& residuals) {
+    const auto coordinates = residuals.leftCols(std::min<Index>(3, residuals.cols()));
+    return quantile(coordinates.rowwise().norm(), 0.5, QuantileRule::Upper);
+}
+
 std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& measured,
                                   const Parameters& registered) {
     const bool has_pixels = campaign.sensor->has_pixels();
     if (!campaign.sensor->has_lengths() && !has_pixels) return std::nullopt;  // it is not known
     Misfit misfit;
     const RowMatrixXd residuals = mean_residuals(campaign, registered, measured);
-    misfit.distance = median_distance(residuals);
+    misfit.distance = detail::median_distance(residuals);
     // Beside a wrong place of the camera it would be any number of pixels.
     const bool is_stated = campaign.has_nominal_base && campaign.has_nominal_targets;
     const Parameters& at = is_stated ? campaign.nominal : registered;
     misfit.expected = has_pixels ? detail::largest_left_over(campaign, at, measured, true)
                                  : detail::expected_distance(campaign, measured);
+    misfit.image = detail::find_other_image(campaign, measured, registered);
+    if (misfit.image) return misfit;
     // Corners by the hundred take long to try, and wrong ones miss by far.
     const double doubtful = has_pixels ? detail::credible_errors : doubtful_errors;
     if (misfit.distance <= doubtful * misfit.expected &&
@@ -109,6 +112,14 @@ std::string describe_planes(const std::vector<PlaneDoubt>& planes) {
 
 std::string describe_misfit(const Campaign& campaign, const Misfit& misfit) {
     const std::string_view unit = campaign.sensor->main_units().error;
+    if (misfit.image) {
+        return fmt::format(
+            "the intrinsics stated are not of this image: as those of {} the nominal robot misses "
+            "half of the corners by {} instead of {} px; state intrinsics of the image that is "
+            "measured in, of its size and neither cropped nor turned",
+            misfit.image->words, detail::format_short(1e3 * misfit.image->distance, 3),
+            detail::format_short(1e3 * misfit.distance, 3));
+    }
     if (misfit.camera) {
         return fmt::format(
             "camera {} is at fault: the nominal robot misses half of its corners by over {} px, of "

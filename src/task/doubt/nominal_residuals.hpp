@@ -21,4 +21,7 @@ RowMatrixXd nominal_residuals(const Campaign& campaign, const Chain& robot,
                               const Measurements& measurements, Parameters registered,
                               const LevenbergMarquardtOptions& options);
 
+/// Of residuals as mean_residuals() gives them, the median length: some may be grossly wrong.
+double median_distance(const RowMatrixXd& residuals);
+
 }  // namespace posewise::detail
