@@ -67,7 +67,8 @@ void add_joint_changes(const Campaign& campaign, std::vector<ReadingChanges>& al
 
 void add_observation_changes(const Sensor& sensor, OrientationNotation notation,
                              std::vector<ReadingChanges>& all) {
-    if (sensor.has_contacts()) return;  // nothing is read
+    // Nothing is read, or by several instruments, whose columns would be tried one by one.
+    if (sensor.has_contacts() || sensor.is_combined()) return;
     const bool are_points = sensor.lengths_per_target() == 3;
     if (are_points) all.push_back({{.kind = Kind::LeftHanded}});
     if (sensor.has_lengths()) {

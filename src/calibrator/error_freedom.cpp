@@ -12,6 +12,7 @@ namespace {
 struct Visit {
     VectorXd times;      ///< samples that show each, a number a row
     VectorXd residuals;  ///< of the means, m or rad
+    std::vector<Index> axes{};  ///< directions of these, alike for all targets; -1: its own
     MatrixXd known;      ///< covariance of one sample by the parameters and by noise
 };
 
@@ -20,8 +21,6 @@ class Visits {
   public:
     Visits(const Campaign& campaign, const Estimate& estimate, const Measurements& measured)
         : is_angle_(!campaign.sensor->has_lengths()),
-          count_(is_angle_ ? campaign.sensor->rows_per_target()
-                           : campaign.sensor->lengths_per_target()),
           // Without priors the noise is that stated times the variance factor, as in the
           // covariance.
           factor_(campaign.spread.is_prior ? 1 : estimate.variance_of(is_angle_).factor),
@@ -84,13 +83,13 @@ class Visits {
     /// `noise` and `residuals` are of the targets seen.
     void add(const Sensor& sensor, const VectorXd& times, const RowMatrixXd& J,
              const MatrixXd& noise, const MatrixXd& covariance, const RowMatrixXd& residuals) {
-        const Index width = sensor.rows_per_target();
         std::vector<Index> rows;  // of a whole observation
         std::vector<Index> kept;  // of those seen
-        const std::vector<Index> seen = seen_rows(times.array() > 0, width);
+        const std::vector<Index> seen = seen_rows(sensor, times.array() > 0);
         for (Index k = 0; k < std::ssize(seen); ++k) {
-            if (k % width >= count_) continue;  // lengths come first
-            rows.push_back(seen[static_cast<std::size_t>(k)]);
+            const Index row = seen[static_cast<std::size_t>(k)];
+            if (sensor.is_angle(row) != is_angle_) continue;
+            rows.push_back(row);
             kept.push_back(k);
         }
         Visit& visit = visits_.emplace_back();
@@ -98,8 +97,13 @@ class Visits {
         visit.times.resize(size);
         visit.residuals.resize(size);
         for (Index k = 0; k < size; ++k) {
-            visit.times[k] = times[rows[static_cast<std::size_t>(k)] / width];
-            visit.residuals[k] = residuals(k / count_, k % count_);
+            const Index row = rows[static_cast<std::size_t>(k)];
+            const Index target = sensor.target_of(row);
+            const Index before = (times.head(target).array() > 0).count();
+            const Index column = sensor.column_of(row);
+            visit.times[k] = times[target];
+            visit.residuals[k] = residuals(before, column);
+            visit.axes.push_back(sensor.rows_of(target) == 1 ? -1 : column);
         }
         const RowMatrixXd J_seen = J(rows, Eigen::all);
         visit.known = J_seen * covariance * J_seen.transpose() + noise(kept, kept);
@@ -110,10 +114,10 @@ class Visits {
     /// has one length there are none: it has its own direction.
     template <typename Action>
     void for_each_pair(const Visit& visit, const Action& action) const {
-        if (count_ == 1) return;
         for (Index a = 0; a < visit.times.size(); ++a) {
-            for (Index b = a % count_; b < visit.times.size(); b += count_) {
-                if (a != b) action(a, b);
+            const Index axis = visit.axes[static_cast<std::size_t>(a)];
+            for (Index b = 0; b < visit.times.size() && axis >= 0; ++b) {
+                if (a != b && visit.axes[static_cast<std::size_t>(b)] == axis) action(a, b);
             }
         }
     }
@@ -141,7 +145,6 @@ class Visits {
     }
 
     bool is_angle_;
-    Index count_;  ///< numbers a target
     double factor_;
     double left_over_ = 0;  ///< variance by the model error
     double common_ = 0;     ///< part of it

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/statistics.hpp"
 
@@ -34,8 +35,10 @@ std::vector<Correlation> strongest_correlations(const Estimate& estimate, Index 
 
 RowMatrixXd residuals(const Campaign& campaign, const Parameters& parameters,
                       const Measurements& measurements) {
-    const Index width = campaign.sensor->rows_per_target();
-    RowMatrixXd r(measurements.is_seen.count(), width);
+    const Sensor& sensor = *campaign.sensor;
+    RowMatrixXd r =
+        RowMatrixXd::Constant(measurements.is_seen.count(), sensor.rows_per_target(),
+                              std::numeric_limits<double>::quiet_NaN());
     VectorXd q(measurements.configurations.cols());
     VectorXd predicted(campaign.sensor->row_count());
     VectorXd deviation(campaign.sensor->row_count());
@@ -45,12 +48,15 @@ RowMatrixXd residuals(const Campaign& campaign, const Parameters& parameters,
         campaign.sensor->predict(world_from_flange(campaign, parameters, q), parameters.sensor,
                                  predicted);
         const Index first = measurements.first_sample[static_cast<std::size_t>(i)];
-        for (Index k = first; k < first + measurements.sample_count(i); ++k) {
-            campaign.sensor->deviation(measurements.observations.row(k).transpose(), predicted,
+        for (Index sample = first; sample < first + measurements.sample_count(i); ++sample) {
+            campaign.sensor->deviation(measurements.observations.row(sample).transpose(), predicted,
                                        deviation);
             for (Index j = 0; j < measurements.is_seen.cols(); ++j) {
-                if (!measurements.is_seen(k, j)) continue;
-                r.row(row++) = deviation.segment(width * j, width).transpose();
+                if (!measurements.is_seen(sample, j)) continue;
+                for (Index k = sensor.first_row(j); k < sensor.first_row(j + 1); ++k) {
+                    r(row, sensor.column_of(k)) = deviation[k];
+                }
+                ++row;
             }
         }
     }
@@ -64,6 +70,21 @@ RowMatrixXd mean_residuals(const Campaign& campaign, const Parameters& parameter
 
 namespace {
 
+/// 0 where a target has no such number.
+RowMatrixXd without_gaps(const Eigen::Ref<const RowMatrixXd>& residuals) {
+    return residuals.array().isNaN().select(0, residuals);
+}
+
+/// The rows of targets that have any of these numbers.
+RowMatrixXd rows_of_kind(const Eigen::Ref<const RowMatrixXd>& residuals) {
+    if (residuals.cols() == 0 || !residuals.hasNaN()) return residuals;
+    std::vector<Index> rows;
+    for (Index row = 0; row < residuals.rows(); ++row) {
+        if (!residuals.row(row).array().isNaN().all()) rows.push_back(row);
+    }
+    return residuals(rows, Eigen::all);
+}
+
 /// Of some columns of the means' residuals, configurations x targets; 0 where a target was not
 /// seen.
 RowMatrixXd squares_of(const Campaign& campaign, const Parameters& parameters,
@@ -75,7 +96,7 @@ RowMatrixXd squares_of(const Campaign& campaign, const Parameters& parameters,
     for (Index i = 0; i < squares.rows(); ++i) {
         for (Index j = 0; j < squares.cols(); ++j) {
             if (!means.is_seen(i, j)) continue;
-            squares(i, j) = r.row(row++).segment(first, count).squaredNorm();
+            squares(i, j) = without_gaps(r.row(row++).segment(first, count)).squaredNorm();
         }
     }
     return squares;
@@ -104,24 +125,29 @@ Metrics make_metrics(const RowMatrixXd& residuals, Index length_count) {
     metrics.coordinate_count = std::min({length_count, residuals.cols(), Index{3}});
     metrics.has_orientation = residuals.cols() > length_count;
     if (metrics.point_count == 0) return metrics;
-    const auto points = residuals.leftCols(metrics.coordinate_count);
-    VectorXd distances = points.rowwise().norm();
-    std::sort(distances.begin(), distances.end());
-    const auto count = static_cast<double>(metrics.point_count);
-    metrics.distance_rms = distances.norm() / std::sqrt(count);
-    metrics.distance_max = distances[metrics.point_count - 1];
-    metrics.distance_mean = distances.mean();
-    metrics.distance_p95 = quantile(distances, 0.95, detail::QuantileRule::Lower);
-    for (Index axis = 0; axis < metrics.coordinate_count; ++axis) {
+    const RowMatrixXd points = rows_of_kind(residuals.leftCols(metrics.coordinate_count));
+    if (points.rows() > 0) {
+        VectorXd distances = without_gaps(points).rowwise().norm();
+        std::sort(distances.begin(), distances.end());
+        metrics.distance_rms = distances.norm() / std::sqrt(static_cast<double>(points.rows()));
+        metrics.distance_max = distances[points.rows() - 1];
+        metrics.distance_mean = distances.mean();
+        metrics.distance_p95 = quantile(distances, 0.95, detail::QuantileRule::Lower);
+    }
+    for (Index axis = 0; axis < metrics.coordinate_count && points.rows() > 0; ++axis) {
         const auto i = static_cast<std::size_t>(axis);
-        metrics.coordinate_rms[i] = points.col(axis).norm() / std::sqrt(count);
-        metrics.coordinate_max[i] = points.col(axis).cwiseAbs().maxCoeff();
+        const RowMatrixXd along = rows_of_kind(points.col(axis));
+        if (along.rows() == 0) continue;
+        metrics.coordinate_rms[i] = along.norm() / std::sqrt(static_cast<double>(along.rows()));
+        metrics.coordinate_max[i] = along.cwiseAbs().maxCoeff();
     }
     if (metrics.has_orientation) {
-        VectorXd angles = residuals.rightCols(residuals.cols() - length_count).rowwise().norm();
+        const RowMatrixXd turns = rows_of_kind(residuals.rightCols(residuals.cols() - length_count));
+        if (turns.rows() == 0) return metrics;
+        VectorXd angles = without_gaps(turns).rowwise().norm();
         std::sort(angles.begin(), angles.end());
-        metrics.orientation_rms = angles.norm() / std::sqrt(count);
-        metrics.orientation_max = angles[metrics.point_count - 1];
+        metrics.orientation_rms = angles.norm() / std::sqrt(static_cast<double>(turns.rows()));
+        metrics.orientation_max = angles[turns.rows() - 1];
         metrics.orientation_p95 = quantile(angles, 0.95, detail::QuantileRule::Lower);
     }
     return metrics;

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "core/decompositions.hpp"
 #include "core/parallel.hpp"
@@ -23,6 +25,22 @@ struct PointError {
     double total() const { return parameters + model + noise; }
 };
 
+/// Where among these rows the lengths of each target are, or its angles: the first and how many.
+std::vector<std::pair<Index, Index>> parts_of_kind(const Sensor& sensor,
+                                                   const std::vector<Index>& rows, bool is_angle) {
+    std::vector<std::pair<Index, Index>> parts;
+    Index target = -1;
+    for (Index k = 0; k < std::ssize(rows); ++k) {
+        const Index row = rows[static_cast<std::size_t>(k)];
+        if (sensor.is_angle(row) != is_angle) continue;
+        const Index of_row = sensor.target_of(row);
+        if (of_row != target) parts.emplace_back(k, 0);
+        target = of_row;
+        ++parts.back().second;
+    }
+    return parts;
+}
+
 /// Of the lengths of each target, or of its angles, in the configurations' order; a target of
 /// which there are no `repeats` (m x targets) is left out.
 std::vector<PointError> point_errors(const Campaign& campaign, const Estimate& estimate,
@@ -32,9 +50,6 @@ std::vector<PointError> point_errors(const Campaign& campaign, const Estimate& e
     Campaign without = campaign;
     without.model_error = without.model_error_orientation = 0;
     const Sensor& sensor = *campaign.sensor;
-    const Index width = sensor.rows_per_target();
-    const Index begin = is_angle ? sensor.lengths_per_target() : 0;  // lengths come first
-    const Index count = is_angle ? width - begin : sensor.lengths_per_target();
     // Without priors the noise is that stated times the variance factor, as in the covariance.
     const double factor = campaign.spread.is_prior ? 1 : estimate.variance_of(is_angle).factor;
     FlangeMotion motion;
@@ -47,9 +62,10 @@ std::vector<PointError> point_errors(const Campaign& campaign, const Estimate& e
         const VectorXd& unknowns = estimate.parameters.sensor;
         const MatrixXd noise = factor * detail::mean_covariance(without, motion, unknowns, times);
         const MatrixXd all = factor * detail::mean_covariance(found, motion, unknowns, times);
-        const RowMatrixXd seen = J(seen_rows(times.array() > 0, width), Eigen::all);
+        const std::vector<Index> rows = seen_rows(sensor, times.array() > 0);
+        const RowMatrixXd seen = J(rows, Eigen::all);
         const RowMatrixXd spread = seen * estimate.covariance;
-        for (Index row = begin; row < seen.rows(); row += width) {
+        for (const auto& [row, count] : parts_of_kind(sensor, rows, is_angle)) {
             const MatrixXd parameters =
                 spread.middleRows(row, count) * seen.middleRows(row, count).transpose();
             const MatrixXd of_noise = noise.block(row, row, count, count);
@@ -247,7 +263,8 @@ std::vector<ErrorPrediction> predict_errors(const Campaign& campaign, const Esti
         prediction.is_angle = is_angle;
         prediction.units = &sensor.units(is_angle);
         prediction.each.resize(static_cast<std::size_t>(configurations.rows()));
-        const auto width = static_cast<std::size_t>(sensor.target_count());
+        const std::size_t width =
+            points.size() / std::max<std::size_t>(1, prediction.each.size());
         detail::for_each_range(configurations.rows(), at_once, [&](Index first, Index last) {
             stop.check("predicting errors");
             for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last);

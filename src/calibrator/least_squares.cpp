@@ -49,7 +49,6 @@ class Configurations {
     explicit Configurations(const IdentificationProblem& problem)
         : problem_(problem),
           sensor_(*problem.campaign.sensor),
-          width_(sensor_.rows_per_target()),
           noise_(problem.campaign),
           q_(problem.campaign.robot.configuration_size()),
           repeats_(problem.repeats.cols()),
@@ -121,10 +120,13 @@ class Configurations {
         residual_ = deviate(i, parameters);
         if (is_elsewhere) place_flange(of_noise);
         const Index rows = noise_.whiten_seen(motion_, of_noise.sensor, repeats_, residual_);
-        for (Index row = 0; row < rows; row += width_) {
-            lengths[row / width_] = residual_.middleRows(row, width_).norm();
+        Index count = 0;
+        for (Index row = 0; row < rows; ++count) {
+            const Index width = width_of_seen(row);
+            lengths[count] = residual_.middleRows(row, width).norm();
+            row += width;
         }
-        return rows / width_;
+        return count;
     }
 
   private:
@@ -133,10 +135,12 @@ class Configurations {
         all.rightCols(1) = deviate(i, parameters);
         const Index rows = noise_.whiten_seen(motion_, parameters.sensor, repeats_, all);
         if (problem_.loss.kind == LossKind::Squares) return rows;
-        for (Index row = 0; row < rows; row += width_) {
-            auto of_target = all.middleRows(row, width_);
+        for (Index row = 0; row < rows;) {
+            const Index width = width_of_seen(row);
+            auto of_target = all.middleRows(row, width);
             const double length = of_target.rightCols(1).norm();
             of_target *= std::sqrt(problem_.loss.weight(length / problem_.deviation));
+            row += width;
         }
         return rows;
     }
@@ -144,6 +148,11 @@ class Configurations {
     void go_to(Index i) {
         q_ = problem_.means.configurations.row(i).transpose();
         repeats_ = problem_.repeats.row(i).transpose();
+    }
+
+    /// Rows of the target that begins at this row of those seen.
+    Index width_of_seen(Index row) const {
+        return sensor_.rows_of(sensor_.target_of(noise_.rows()[static_cast<std::size_t>(row)]));
     }
 
     /// Of the flange's motion what the noise needs.
@@ -165,7 +174,6 @@ class Configurations {
 
     const IdentificationProblem& problem_;
     const Sensor& sensor_;
-    Index width_;
     PoseNoise noise_;
     FlangeMotion motion_;
     VectorXd q_;
@@ -187,10 +195,13 @@ std::string describe_unseen_target(const Campaign& campaign, const Measurements&
     if (campaign.prior && campaign.prior->has_sensor) return "";
     const Sensor& sensor = *campaign.sensor;
     const Targets& targets = sensor.targets();
-    const Index seen_of_each = sensor.target_count() / targets.count();
+    std::vector<bool> is_seen(static_cast<std::size_t>(targets.count()), false);
+    for (Index k = 0; k < sensor.target_count(); ++k) {
+        if (!measurements.is_seen.col(k).any()) continue;
+        is_seen[static_cast<std::size_t>(sensor.point_of(k))] = true;
+    }
     for (Index j = 0; j < targets.count(); ++j) {
-        const auto of_target = measurements.is_seen.middleCols(seen_of_each * j, seen_of_each);
-        if (targets.is_known(j) || of_target.any()) continue;
+        if (targets.is_known(j) || is_seen[static_cast<std::size_t>(j)]) continue;
         return fmt::format(
             "target {} is seen in no sample of {}, so its position cannot be found; measure it, or "
             "leave it out of the campaign's targets",

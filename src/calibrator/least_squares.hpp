@@ -31,7 +31,12 @@ struct IdentificationProblem {
 
     /// Numbers observed: those of the targets seen.
     Index observation_count() const {
-        return means.is_seen.count() * campaign.sensor->rows_per_target();
+        const Sensor& sensor = *campaign.sensor;
+        Index count = 0;
+        for (Index j = 0; j < means.is_seen.cols(); ++j) {
+            count += sensor.rows_of(j) * means.is_seen.col(j).count();
+        }
+        return count;
     }
     /// One equation for each parameter that has a prior: its coordinate is 0, give or take 1.
     Index prior_begin() const { return posewise::prior_begin(campaign); }

@@ -43,7 +43,6 @@ class PredictiveScore {
                     const Campaign& expected)
         : expected_{std::log(expected.model_error), std::log(expected.model_error_orientation)},
           common_(common_part(expected)),
-          rows_per_target_(expected.sensor->rows_per_target()),
           size_(problem.units.size()),
           prior_begin_(problem.prior_begin()),
           prior_errors_(problem.prior_count() > 0
@@ -80,7 +79,7 @@ class PredictiveScore {
         effects_.resize(most_rows, 6);
         RowMatrixXd all(sensor.row_count(), size_ + 1);
         RowMatrixXd effect = RowMatrixXd::Zero(sensor.row_count(), 6);
-        const bool is_narrow = sensor.has_pixels() && pays_narrowly(sensor, parameters);
+        const bool is_narrow = sensor.has_only_pixels() && pays_narrowly(sensor, parameters);
         PoseNoise noise(without);
         FlangeMotion motion;
         VectorXd q, repeats, predicted(sensor.row_count()), deviation(sensor.row_count());
@@ -119,11 +118,13 @@ class PredictiveScore {
                 effects_.row(row) = effect.row(of_all);
                 stated_.row(row++) = all.row(of_all);
                 is_angle_.push_back(sensor.is_angle(of_all));
+                target_.push_back(sensor.target_of(of_all));
             }
             first_row_.push_back(row);
         }
         // Of pixels both move the flange together: one number is found.
         const bool has_pixels = sensor.has_pixels();
+        has_pixels_ = has_pixels;
         has_ = {(sensor.has_lengths() || has_pixels) && std::isfinite(expected_[0]),
                 sensor.has_angles() && !has_pixels && std::isfinite(expected_[1])};
         stated_.conservativeResize(row, Eigen::NoChange);
@@ -176,8 +177,10 @@ class PredictiveScore {
                 covariance_.noalias() += common_ * squares[0] * moved * moved.transpose();
             }
             for (Index k = 0; k < count; ++k) {
-                const bool turns = has_[1] && is_angle_[static_cast<std::size_t>(first + k)];
-                covariance_(k, k) += turns ? squares[1] : (1 - common_) * squares[0];
+                const bool is_angle = is_angle_[static_cast<std::size_t>(first + k)];
+                if (is_angle && has_pixels_) continue;  // they have no error of their own
+                covariance_(k, k) +=
+                    has_[1] && is_angle ? squares[1] : (1 - common_) * squares[0];
             }
             if (common_ == 0) {
                 detail::whiten(covariance_, whitened_.middleRows(first, count), factor_,
@@ -266,23 +269,33 @@ class PredictiveScore {
             constexpr double directions = 6;
             const Index readings = predicted_.size();
             score += std::min(1.0, directions / static_cast<double>(readings)) *
-                     log_density_by_target(readings);
+                     log_density_by_target(first, readings);
         });
         return score;
     }
 
-    /// That of predicted_ under covariance_, target by target.
-    double log_density_by_target(Index count) {
+    /// That of predicted_ under covariance_, target by target. `first`: the configuration's row.
+    double log_density_by_target(Index first, Index count) {
         double sum = 0;
-        for (Index row = 0; row < count; row += rows_per_target_) {
-            const MatrixXd of_target =
-                covariance_.block(row, row, rows_per_target_, rows_per_target_);
+        for (Index row = 0; row < count;) {
+            const Index width = width_of_target(first, row, count);
+            const MatrixXd of_target = covariance_.block(row, row, width, width);
             const Eigen::LLT<MatrixXd> root(of_target);
-            VectorXd e = predicted_.segment(row, rows_per_target_);
+            VectorXd e = predicted_.segment(row, width);
             root.matrixL().solveInPlace(e);
             sum -= root.matrixLLT().diagonal().array().log().sum() + e.squaredNorm() / 2;
+            row += width;
         }
         return sum;
+    }
+
+    /// Of narrowed readings two: they are pixels.
+    Index width_of_target(Index first, Index row, Index count) const {
+        if (!narrowed_.empty()) return 2;
+        const auto target = [&](Index k) { return target_[static_cast<std::size_t>(first + k)]; };
+        Index end = row + 1;
+        while (end < count && target(end) == target(row)) ++end;
+        return end - row;
     }
 
     double population(const LogErrors& errors) const {
@@ -297,7 +310,6 @@ class PredictiveScore {
 
     LogErrors expected_;
     double common_;  ///< common_part()
-    Index rows_per_target_;
     Index size_;
     Index prior_begin_;
     VectorXd prior_errors_;
@@ -307,6 +319,8 @@ class PredictiveScore {
     // What the configurations tell, one after another.
     std::vector<Index> first_row_{0};  ///< configurations + 1
     std::vector<bool> is_angle_;
+    std::vector<Index> target_;  ///< of each row, but of narrowed ones
+    bool has_pixels_ = false;
     RowMatrixXd stated_;       ///< Jacobian by scaled parameters and residual, not whitened
     RowMatrixXd covariances_;  ///< but for the model error, of each as many columns as it has rows
     RowMatrixXd effects_;      ///< derivative by model_error_twists(), 6 columns
@@ -436,7 +450,7 @@ Campaign find_model_error(const IdentificationProblem& problem, const Parameters
     found.model_error = within_reach(std::exp(averages[0]), expected.model_error);
     found.model_error_orientation =
         within_reach(std::exp(averages[1]), expected.model_error_orientation);
-    if (expected.sensor->has_pixels() && expected.model_error > 0) {
+    if (expected.sensor->has_only_pixels() && expected.model_error > 0) {
         found.model_error_orientation =
             expected.model_error_orientation * found.model_error / expected.model_error;
     }

@@ -48,7 +48,7 @@ double measured_extent(const Campaign& campaign, const Measurements& measured) {
 
 /// With which the measured points spread about as the flange does.
 double likely_length_factor(const Campaign& campaign, const Measurements& measured) {
-    if (campaign.sensor->lengths_per_target() != 3) return 1;
+    if (campaign.sensor->lengths_per_target() != 3 || campaign.sensor->is_combined()) return 1;
     const double extent = measured_extent(campaign, measured);
     constexpr double tolerated = 4;  // targets beside the flange move farther
     if (!(extent > tolerated) && !(extent < 1 / tolerated && extent > 0)) return 1;
@@ -114,7 +114,7 @@ Index changes_of(const FittedReading& reading) { return count_changes(reading.ch
 Measurements with_few_corners(const Sensor& sensor, Measurements measurements) {
     constexpr Index enough = 12;
     const Index count = measurements.is_seen.cols();
-    if (!sensor.has_pixels() || count <= enough) return measurements;
+    if (!sensor.has_only_pixels() || count <= enough) return measurements;
     std::vector<Index> order(static_cast<std::size_t>(count));
     std::iota(order.begin(), order.end(), Index{0});
     const auto place = [](Index k) {

@@ -11,6 +11,7 @@
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/measurements.hpp"
+#include "posewise/measurement/sensors.hpp"
 
 namespace posewise {
 namespace {
@@ -165,11 +166,118 @@ Start solve_linear(const Campaign& campaign, const ObservedPoints& observed,
     return {{found, confused.empty() ? "" : describe_shortage(campaign, means, confused)}, views};
 }
 
+Start find_start(const Campaign& campaign, const Measurements& measurements);
+Registration polish(const Campaign& campaign, const Measurements& measurements,
+                    const Start& start);
+
+/// One of several instruments alone: the campaign in its own frame, and what it measured.
+struct PartAlone {
+    Campaign campaign;
+    Measurements measured;
+};
+
+PartAlone take_part(const Campaign& campaign, const CombinedSensor& combined, Index part,
+                    const Measurements& measurements) {
+    const SensorPart& stated = combined.part(part);
+    PartAlone alone{campaign, measurements};
+    alone.campaign.sensor = stated.sensor;
+    alone.campaign.prior.reset();
+    alone.campaign.nominal.sensor = combined.unknowns_of(part, campaign.nominal.sensor);
+    alone.campaign.has_nominal_targets = stated.has_nominal_unknowns;
+    const Isometry3d frame = combined.frame(part, campaign.nominal.sensor);
+    alone.campaign.nominal.world_from_base = frame.inverse() * campaign.nominal.world_from_base;
+    const bool is_same = stated.known_frame && frame.isApprox(Isometry3d::Identity(), 0);
+    if (!is_same) alone.campaign.base_is_known.fill(false);
+    Measurements& measured = alone.measured;
+    measured.observations =
+        RowMatrixXd(measurements.observations.middleCols(combined.first_row_of(part),
+                                                         stated.sensor->row_count()));
+    measured.is_seen = Seen(measurements.is_seen.middleCols(combined.first_target(part),
+                                                            stated.sensor->target_count()));
+    std::vector<Index> shown;
+    for (Index i = 0; i < measured.configuration_count(); ++i) {
+        const Index first = measured.first_sample[static_cast<std::size_t>(i)];
+        if (measured.is_seen.middleRows(first, measured.sample_count(i)).any()) shown.push_back(i);
+    }
+    measured = take(measured, shown);
+    return alone;
+}
+
+/// "sensor 2 (corners)".
+std::string name_of(const CombinedSensor& combined, Index part) {
+    return fmt::format("sensor {} ({})", part + 1, combined.part(part).sensor->words().readings);
+}
+
+/// Each instrument that needs no first guess registers its own base and unknowns alone. The base in
+/// the first one's frame is then found by the first that is in a known frame, further frames follow
+/// from their own bases. What is found by none begins at its nominal value.
+Start find_start_of_parts(const Campaign& campaign, const CombinedSensor& combined,
+                          const Measurements& measurements) {
+    const auto count = static_cast<std::size_t>(combined.part_count());
+    std::vector<VectorXd> unknowns(count);
+    std::vector<Isometry3d> frames(count, Isometry3d::Identity());
+    std::vector<std::optional<Isometry3d>> bases(count);  // each in its instrument's frame
+    std::optional<Isometry3d> base;
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto part = static_cast<Index>(k);
+        const SensorPart& stated = combined.part(part);
+        unknowns[k] = combined.unknowns_of(part, campaign.nominal.sensor);
+        frames[k] = combined.frame(part, campaign.nominal.sensor);
+        const auto [alone, measured] = take_part(campaign, combined, part, measurements);
+        if (measured.configuration_count() == 0) {
+            return {{campaign.nominal,
+                     fmt::format("{} shows nothing in any configuration; measure by it, or leave "
+                                 "it out of the campaign",
+                                 name_of(combined, part))}};
+        }
+        if (base_parameter_count(alone) < 6 || !stated.sensor->observed_points()) continue;
+        const Start start = find_start(alone, measured);
+        Registration found = start;
+        if (found.is_determined()) found = polish(alone, measured, start);
+        if (!found.is_determined()) {
+            return {{campaign.nominal, name_of(combined, part) + ": " + found.undetermined}};
+        }
+        unknowns[k] = found.parameters.sensor;
+        bases[k] = found.parameters.world_from_base;
+        if (!base && stated.known_frame) base = *stated.known_frame * *bases[k];
+    }
+    const auto refuse_unless = [&](bool is_stated, std::size_t k, const char* what) {
+        if (is_stated) return;
+        throw InputError(fmt::format(
+            "{} of {} cannot be found from nothing; the campaign must state it, if only roughly "
+            "(keys of sensors[{}])",
+            what, name_of(combined, static_cast<Index>(k)), k + 1));
+    };
+    Parameters start = campaign.nominal;
+    if (base) start.world_from_base = *base;
+    if (!base && base_parameter_count(campaign) > 0 && !campaign.has_nominal_base) {
+        throw InputError(fmt::format(
+            "the base in the frame of {} cannot be found from nothing; the campaign must state it, "
+            "if only roughly (key base)",
+            name_of(combined, 0)));
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        const SensorPart& stated = combined.part(static_cast<Index>(k));
+        if (!bases[k]) {
+            refuse_unless(unknowns[k].size() == 0 || stated.has_nominal_unknowns, k,
+                          "what is unknown");
+        }
+        if (stated.known_frame) continue;
+        if (!bases[k]) refuse_unless(stated.has_nominal_frame, k, "the frame");
+        if (bases[k]) frames[k] = start.world_from_base * bases[k]->inverse();
+    }
+    start.sensor = combined.unknowns(unknowns, frames);
+    return {{std::move(start), {}}};
+}
+
 /// The robot has no parameters.
 Start find_start(const Campaign& campaign, const Measurements& measurements) {
     const Sensor& sensor = *campaign.sensor;
     std::string unseen = detail::describe_unseen_target(campaign, measurements);
     if (!unseen.empty()) return {{campaign.nominal, std::move(unseen)}};
+    if (const auto* const combined = dynamic_cast<const CombinedSensor*>(&sensor)) {
+        return find_start_of_parts(campaign, *combined, measurements);
+    }
     if (base_parameter_count(campaign) == 6) {
         const Measurements means = mean_measurements(sensor, measurements);
         if (const auto observed = sensor.observed_points(means)) {

@@ -14,10 +14,11 @@ namespace {
 /// Less than this part of a column is outside what the model takes up: then nothing of it shows.
 constexpr double least_part = 1e-6;
 
-void describe_rows(const Sensor& sensor, LinearFit& fit) {
-    const Index width = sensor.rows_per_target();
-    for (Index row = 0; row < fit.first_row.back(); ++row) {
-        fit.is_length.push_back(!sensor.has_lengths() || row % width < sensor.lengths_per_target());
+void describe_rows(const Sensor& sensor, const Seen& is_seen, LinearFit& fit) {
+    for (Index i = 0; i < is_seen.rows(); ++i) {
+        for (const Index row : seen_rows(sensor, is_seen.row(i))) {
+            fit.is_length.push_back(!sensor.has_lengths() || !sensor.is_angle(row));
+        }
     }
 }
 
@@ -98,7 +99,7 @@ std::optional<LinearFit> linear_fit(const IdentificationProblem& problem,
     const VectorXd c =
         L.triangularView<Eigen::Lower>().solve(VectorXd(inverse.cwiseProduct(equations.g)));
     fit.e = system.r().head(rows) - fit.U * c;
-    describe_rows(*campaign.sensor, fit);
+    describe_rows(*campaign.sensor, problem.means.is_seen, fit);
     return fit;
 }
 

@@ -27,6 +27,11 @@ Loss complete_loss(const Loss& loss, const Campaign& campaign) {
         throw InputError(
             fmt::format("width of the loss is {:g}, must be finite and not negative", loss.width));
     }
+    if (loss.kind != LossKind::Squares && campaign.sensor->is_combined()) {
+        throw InputError(
+            "a robust loss weighs readings of one kind, not those of several sensors; must be "
+            "squares (`loss`)");
+    }
     Loss complete = loss;
     if (loss.width == 0 && loss.kind != LossKind::Squares) {
         complete.width = default_width(loss.kind, campaign.sensor->rows_per_target());

@@ -14,11 +14,10 @@ namespace {
 /// The observations' equations that are lengths, and those that are angles.
 std::array<std::vector<Index>, 2> rows_by_kind(const IdentificationProblem& problem) {
     const Sensor& sensor = *problem.campaign.sensor;
-    const Index width = sensor.rows_per_target();
     std::array<std::vector<Index>, 2> rows;
     Index row = 0;
     for (Index i = 0; i < problem.means.configuration_count(); ++i) {
-        for (const Index of_all : seen_rows(problem.means.is_seen.row(i), width)) {
+        for (const Index of_all : seen_rows(sensor, problem.means.is_seen.row(i))) {
             rows[sensor.is_angle(of_all) ? 1 : 0].push_back(row++);
         }
     }

@@ -261,8 +261,11 @@ Index least_pose_count(const Campaign& stated, const StopSignal& stop) {
     const Identifiability all = find_identifiable(campaign, stop);
     const auto rank = static_cast<Index>(all.kept.size());
     const detail::ShownPoses poses = detail::poses_to_judge(campaign);
-    const Index seen_at_once = poses.is_seen.rowwise().count().maxCoeff();
-    const Index rows = campaign.sensor->rows_per_target() * seen_at_once;
+    Index rows = 1;  // of a pose, the most
+    for (Index i = 0; i < poses.is_seen.rows(); ++i) {
+        const auto seen = seen_rows(*campaign.sensor, poses.is_seen.row(i));
+        rows = std::max(rows, static_cast<Index>(std::ssize(seen)));
+    }
     const VectorXd sizes = detail::sizes_of(campaign);
     const auto suffices = [&](Index count) {
         if (count >= poses.configurations.rows()) return true;

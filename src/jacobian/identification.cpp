@@ -39,8 +39,8 @@ Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
     const Sensor& sensor = *campaign.sensor;
     Blocks blocks;
     for (Index i = 0; i < configurations.rows(); ++i) {
-        const Index seen = (repeats.row(i).array() > 0).count();
-        const Index rows = std::min(seen * sensor.rows_per_target(), most_rows);
+        const auto seen = seen_rows(sensor, repeats.row(i).array() > 0);
+        const Index rows = std::min(static_cast<Index>(std::ssize(seen)), most_rows);
         blocks.first_row.push_back(blocks.first_row.back() + rows);
     }
     blocks.matrix.resize(blocks.first_row.back(), parameter_count(campaign));
@@ -86,7 +86,7 @@ Blocks make_plain_blocks(const Campaign& campaign, const Parameters& parameters,
                    Eigen::Ref<RowMatrixXd> rows) mutable {
             sensor.differentiate(motion.world_from_flange, motion.twists, parameters.sensor, J);
             Index count = 0;
-            for (const Index row : seen_rows(times.array() > 0, sensor.rows_per_target())) {
+            for (const Index row : seen_rows(sensor, times.array() > 0)) {
                 rows.row(count++) = J.row(row);
             }
         };

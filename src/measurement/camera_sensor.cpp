@@ -8,6 +8,7 @@
 #include "board_starts.hpp"
 #include "camera_view.hpp"
 #include "core/format.hpp"
+#include "known_sensor.hpp"
 #include "noise_words.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/sensors.hpp"
@@ -307,13 +308,23 @@ SensorWords CameraSensor::words() const {
                         intrinsics, detail::format_short(setup_.sigma))};
 }
 
+namespace {
+
+/// The camera, if it is one; whether its unknowns are known or not.
+const CameraSensor* as_camera(const Sensor& sensor) {
+    const auto* const known = dynamic_cast<const detail::KnownSensor*>(&sensor);
+    return dynamic_cast<const CameraSensor*>(known != nullptr ? &known->original() : &sensor);
+}
+
+}  // namespace
+
 Index first_corner(const Sensor& sensor) {
-    const auto* const camera = dynamic_cast<const CameraSensor*>(&sensor);
+    const CameraSensor* const camera = as_camera(sensor);
     return camera != nullptr ? camera->setup().first_corner : 1;
 }
 
 Index camera_count(const Sensor& sensor) {
-    const auto* const camera = dynamic_cast<const CameraSensor*>(&sensor);
+    const CameraSensor* const camera = as_camera(sensor);
     return camera != nullptr ? camera->camera_count() : 1;
 }
 

@@ -1,5 +1,7 @@
 #include "known_sensor.hpp"
 
+#include "posewise/measurement/sensors.hpp"
+
 namespace posewise::detail {
 namespace {
 
@@ -48,9 +50,29 @@ std::optional<ObservedPoints> KnownSensor::observed_points() const {
                           {}};
 }
 
+namespace {
+
+/// Each part with its unknowns known, where its frame is, too.
+std::shared_ptr<const Sensor> known_parts(const CombinedSensor& combined,
+                                          const VectorXd& unknowns) {
+    std::vector<SensorPart> parts;
+    for (Index k = 0; k < combined.part_count(); ++k) {
+        std::shared_ptr<const Sensor> sensor = combined.part(k).sensor;
+        const VectorXd own = combined.unknowns_of(k, unknowns);
+        if (own.size() > 0) sensor = std::make_shared<KnownSensor>(sensor, own);
+        parts.push_back({std::move(sensor), combined.frame(k, unknowns)});
+    }
+    return std::make_shared<CombinedSensor>(std::move(parts));
+}
+
+}  // namespace
+
 Campaign with_known_sensor(Campaign campaign, const VectorXd& unknowns) {
     if (unknowns.size() == 0) return campaign;
-    campaign.sensor = std::make_shared<KnownSensor>(campaign.sensor, unknowns);
+    const auto* const combined = dynamic_cast<const CombinedSensor*>(campaign.sensor.get());
+    campaign.sensor = combined != nullptr
+                          ? known_parts(*combined, unknowns)
+                          : std::make_shared<KnownSensor>(campaign.sensor, unknowns);
     campaign.nominal.sensor.resize(0);
     campaign.has_nominal_targets = true;
     return campaign;

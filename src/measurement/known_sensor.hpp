@@ -12,6 +12,9 @@ class KnownSensor final : public Sensor {
   public:
     KnownSensor(std::shared_ptr<const Sensor> sensor, VectorXd unknowns);
 
+    /// The sensor whose unknowns these are.
+    const Sensor& original() const { return *sensor_; }
+
     const Targets& targets() const override { return targets_; }
     Index row_count() const override { return sensor_->row_count(); }
     std::vector<std::string> observation_names() const override {

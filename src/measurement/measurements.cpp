@@ -52,15 +52,16 @@ Measurements mean_measurements(const Sensor& sensor, const Measurements& measure
     Measurements means{measurements.configurations, measurements.ids, {}, times.array() > 0, {0}};
     means.observations.setZero(times.rows(), measurements.observations.cols());
     means.notation = measurements.notation;
-    const Index width = sensor.rows_per_target();
     // Whole observations, of which only one target's part means anything.
     VectorXd deviation(means.observations.cols());
     VectorXd mean(means.observations.cols());
     for_each_seen(measurements, [&](Index i, Index j, const std::vector<Index>& samples) {
         const auto first = measurements.observations.row(samples.front()).transpose();
-        auto of_target = means.observations.row(i).segment(width * j, width);
+        const Index row = sensor.first_row(j);
+        const Index width = sensor.rows_of(j);
+        auto of_target = means.observations.row(i).segment(row, width);
         if (samples.size() == 1) {
-            of_target = first.segment(width * j, width).transpose();
+            of_target = first.segment(row, width).transpose();
             return;
         }
         VectorXd sum = VectorXd::Zero(first.size());
@@ -70,7 +71,7 @@ Measurements mean_measurements(const Sensor& sensor, const Measurements& measure
         }
         sum /= static_cast<double>(samples.size());
         sensor.deviate(first, sum, mean);
-        of_target = mean.segment(width * j, width).transpose();
+        of_target = mean.segment(row, width).transpose();
     });
     means.first_sample.reserve(static_cast<std::size_t>(times.rows()) + 1);
     for (Index i = 0; i < times.rows(); ++i) means.first_sample.push_back(i + 1);
@@ -166,18 +167,17 @@ std::vector<Index> evenly_spaced(Index count, Index most) {
 
 std::optional<Repeatability> repeatability(const Sensor& sensor, const Measurements& measurements) {
     const Measurements means = mean_measurements(sensor, measurements);
-    const Index width = sensor.rows_per_target();
     // Of lengths, then of angles.
     std::array<double, 2> sum_of_squares{};
     std::array<double, 2> degrees_of_freedom{};
     for_each_seen(measurements, [&](Index i, Index j, const std::vector<Index>& samples) {
         const auto mean = means.observations.row(i).transpose();
-        for (Index row = width * j; row < width * (j + 1); ++row) {
+        for (Index row = sensor.first_row(j); row < sensor.first_row(j + 1); ++row) {
             degrees_of_freedom[sensor.is_angle(row)] += static_cast<double>(samples.size()) - 1;
         }
         for (const Index k : samples) {
             const VectorXd d = sensor.deviation(measurements.observations.row(k).transpose(), mean);
-            for (Index row = width * j; row < width * (j + 1); ++row) {
+            for (Index row = sensor.first_row(j); row < sensor.first_row(j + 1); ++row) {
                 sum_of_squares[sensor.is_angle(row)] += d[row] * d[row];
             }
         }

@@ -43,11 +43,11 @@ struct TargetGroup {
 TargetGroup group_of_targets(const Sensor& sensor, const VectorXd& sensor_unknowns) {
     TargetGroup group;
     const Index count = sensor.position_count();
-    for (Index j = 0; j < count; ++j) group.middle += sensor.target_position(j, sensor_unknowns);
+    for (Index j = 0; j < count; ++j) group.middle += sensor.counted_position(j, sensor_unknowns);
     group.middle /= static_cast<double>(count);
     double squares = 0;
     for (Index j = 0; j < count; ++j) {
-        squares += (sensor.target_position(j, sensor_unknowns) - group.middle).squaredNorm();
+        squares += (sensor.counted_position(j, sensor_unknowns) - group.middle).squaredNorm();
     }
     group.lever = std::sqrt(squares / static_cast<double>(count));
     return group;
@@ -60,7 +60,7 @@ struct MotionShares {
     double turn = 0;  ///< rad for 1 m at the targets
 };
 MotionShares shares_of(const Campaign& campaign, const TargetGroup& group) {
-    if (campaign.sensor->has_pixels()) {
+    if (campaign.sensor->has_only_pixels()) {
         const double turn = campaign.model_error_orientation;
         return {1, campaign.model_error > 0 ? turn / campaign.model_error : 0};
     }
@@ -118,10 +118,11 @@ void set_model_error_twists(const Campaign& campaign, const Isometry3d& world_fr
 }
 
 double common_part(const Campaign& campaign) {
-    if (campaign.sensor->has_pixels()) return 1;
-    if (campaign.sensor->seen_at_once() <= 1) return 0;
-    return campaign.model_error_common.value_or(campaign.spread.is_prior ? usual_model_error_common
-                                                                         : 0);
+    const Sensor& sensor = *campaign.sensor;
+    if (sensor.has_only_pixels()) return 1;
+    if (sensor.seen_at_once() <= 1) return 0;
+    const bool is_usual = campaign.spread.is_prior || sensor.has_pixels();
+    return campaign.model_error_common.value_or(is_usual ? usual_model_error_common : 0);
 }
 
 double common_model_error(const Campaign& campaign) {
@@ -132,9 +133,11 @@ VectorXd own_model_errors(const Campaign& campaign) {
     const double own = std::sqrt(1 - common_part(campaign)) * campaign.model_error;
     VectorXd errors(campaign.sensor->row_count());
     for (Index row = 0; row < errors.size(); ++row) {
-        errors[row] = campaign.sensor->is_angle(row) ? campaign.model_error_orientation : own;
+        const bool is_angle = campaign.sensor->is_angle(row);
+        const double of_angle =
+            campaign.sensor->has_pixels() ? 0 : campaign.model_error_orientation;
+        errors[row] = is_angle ? of_angle : own;
     }
-    if (campaign.sensor->has_pixels()) errors.setZero();
     return errors;
 }
 
@@ -234,20 +237,22 @@ const MatrixXd& PoseNoise::own_covariance(const FlangeMotion& motion,
     const Sensor& sensor = *campaign_.sensor;
     const bool is_same = repeats_.size() > 0 && repeats_ == repeats;
     if (is_same && sensor.has_constant_covariance()) return own_;
-    const Index width = sensor.rows_per_target();
     if (!is_same) {
         repeats_ = repeats;
-        rows_ = seen_rows(repeats.array() > 0, width);
+        rows_ = seen_rows(sensor, repeats.array() > 0);
     }
     sensor.covariance(motion.world_from_flange, sensor_unknowns, of_sensor_);
     const Index count = std::ssize(rows_);
     own_.resize(count, count);
     own_.setZero();
-    for (Index k = 0; k < count; k += width) {  // targets are independent of each other
+    for (Index k = 0; k < count;) {  // targets are independent of each other
         const Index row = rows_[static_cast<std::size_t>(k)];
+        const Index target = sensor.target_of(row);
+        const Index width = sensor.rows_of(target);
         auto of_target = own_.block(k, k, width, width);
-        of_target = of_sensor_.block(row, row, width, width) / repeats[row / width];
+        of_target = of_sensor_.block(row, row, width, width) / repeats[target];
         of_target.diagonal() += own_variances_.segment(row, width);
+        k += width;
     }
     return own_;
 }

@@ -13,6 +13,9 @@ constexpr double farthest_tracker = 200;  // m: none measures farther
 constexpr double nearest_tracker = 0.05;  // m: there the robot stands
 
 const PointNoise* noise_of(const Sensor& sensor) {
+    if (const auto* several = dynamic_cast<const CombinedSensor*>(&sensor)) {
+        return noise_of(*several->part(0).sensor);
+    }
     if (const auto* points = dynamic_cast<const PointSensor*>(&sensor)) return &points->noise();
     if (const auto* poses = dynamic_cast<const PoseSensor*>(&sensor)) return &poses->noise();
     return nullptr;

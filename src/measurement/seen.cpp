@@ -18,6 +18,17 @@ SeenTargets seen_targets(const std::vector<Index>& targets, Index target_count) 
     return is_seen;
 }
 
+std::vector<Index> seen_rows(const Sensor& sensor, const SeenTargets& is_seen) {
+    if (!sensor.is_combined()) return seen_rows(is_seen, sensor.rows_per_target());
+    std::vector<Index> rows;
+    for (const Index target : targets_seen(is_seen)) {
+        for (Index row = sensor.first_row(target); row < sensor.first_row(target + 1); ++row) {
+            rows.push_back(row);
+        }
+    }
+    return rows;
+}
+
 std::vector<Index> seen_rows(const SeenTargets& is_seen, Index rows_per_target) {
     std::vector<Index> rows;
     rows.reserve(static_cast<std::size_t>(rows_per_target * is_seen.size()));

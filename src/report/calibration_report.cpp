@@ -68,9 +68,10 @@ std::string describe_model_error(const Calibration& calibration) {
 /// ": 1.02 in mm, 4.3 in mrad" where both are measured.
 std::string describe_variance_by_kind(const Estimate& estimate) {
     if (estimate.variance_by_kind.empty()) return "";
-    return fmt::format(": {} in mm, {} in mrad",
+    return fmt::format(": {} in mm, {} in {}",
                        detail::format_short(estimate.variance_of(false).factor, 4),
-                       detail::format_short(estimate.variance_of(true).factor, 4));
+                       detail::format_short(estimate.variance_of(true).factor, 4),
+                       estimate.fit.orientation_units->error);
 }
 
 std::string describe_ending(const Calibration& calibration) {
@@ -201,6 +202,11 @@ std::string format_accuracy(const Calibration& calibration) {
     add(calibration.left_out, "not in plan");
     add(calibration.validation, "validation");
     std::string text = format_section("Accuracy", detail::metrics_table(columns)) + '\n';
+    if (!calibration.by_sensor.empty()) {
+        text += format_section("Accuracy of each sensor, RMS",
+                               detail::sensor_table(calibration.by_sensor)) +
+                '\n';
+    }
     if (calibration.held_out) {
         text += fmt::format(
             "held out: {} folds, {} of them not identifiable{}\n", calibration.held_out->folds,

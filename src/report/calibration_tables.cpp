@@ -80,6 +80,18 @@ Table metrics_table(const std::vector<std::pair<std::string, Metrics>>& columns)
     return table;
 }
 
+Table sensor_table(const std::vector<SensorAccuracy>& sensors) {
+    Table table{{"sensor", "readings", "unit", "nominal", "calibrated", "held out"}, {}};
+    Index number = 0;
+    for (const SensorAccuracy& one : sensors) {
+        table.rows.push_back({fmt::format("{} ({})", ++number, one.readings),
+                              std::to_string(one.fit.point_count), std::string(one.units->error),
+                              format_mm(one.nominal.rms()), format_mm(one.fit.rms()),
+                              one.held_out ? format_mm(one.held_out->rms()) : "-"});
+    }
+    return table;
+}
+
 Table value_table(const Campaign& campaign, const Parameters& parameters) {
     const VectorXd values = flatten(campaign, parameters);
     const auto names = parameter_names(campaign);

@@ -12,6 +12,8 @@ namespace posewise::detail {
 /// Metrics side by side in mm, one named column each: distance RMS, maximum, mean and 95 %, then
 /// RMS and maximum of x, y and z. A column without points shows "-".
 Table metrics_table(const std::vector<std::pair<std::string, Metrics>>& columns);
+/// Of several instruments each, in its own unit.
+Table sensor_table(const std::vector<SensorAccuracy>& sensors);
 
 /// Every parameter with its value: errors of the robot in mm and mrad, targets in mm, the base's
 /// position in mm and its turn as the rotation vector in degrees.

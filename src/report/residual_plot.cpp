@@ -107,13 +107,20 @@ std::string distribution_panel(const std::vector<ReadingResidual>& readings,
 }  // namespace
 
 std::string residual_plot_script(const Campaign& campaign,
-                                 const std::vector<ReadingResidual>& readings,
+                                 const std::vector<ReadingResidual>& all_readings,
                                  const std::string& image_path) {
     check_image_path(image_path);
-    if (readings.empty()) throw InputError("there are no readings to draw");
     const Sensor& sensor = *campaign.sensor;
     const Index lengths = sensor.lengths_per_target();
     const DrawnRows rows{0, lengths > 0 ? lengths : sensor.rows_per_target()};
+    std::vector<ReadingResidual> readings = all_readings;
+    if (sensor.is_combined()) {  // those that all have the same axes
+        std::erase_if(readings, [&](const ReadingResidual& one) {
+            return one.calibrated.size() < rows.count ||
+                   sensor.is_angle(sensor.first_row(one.target)) == (lengths > 0);
+        });
+    }
+    if (readings.empty()) throw InputError("there are no readings to draw");
     const char* const unit = lengths > 0 ? "mm" : "mrad";
     return gnuplot_output(image_path, 1200, 560) +
            fmt::format(

@@ -82,7 +82,13 @@ TEST(EverySensor, NamesItsNumbersAndUnknowns) {
         EXPECT_EQ(static_cast<Index>(sensor.unknown_names().size()),
                   campaign.nominal.sensor.size());
         EXPECT_EQ(sensor.unknown_is_angle().size(), sensor.unknown_names().size());
-        EXPECT_EQ(sensor.row_count() % sensor.target_count(), 0);
+        EXPECT_EQ(sensor.first_row(sensor.target_count()), sensor.row_count());
+        for (Index row = 0; row < sensor.row_count(); ++row) {
+            const Index target = sensor.target_of(row);
+            EXPECT_GE(row, sensor.first_row(target));
+            EXPECT_LT(row, sensor.first_row(target + 1));
+            EXPECT_EQ(sensor.column_of(row) < sensor.lengths_per_target(), !sensor.is_angle(row));
+        }
     }
 }
 

@@ -98,6 +98,68 @@ inline Campaign before_camera(const Campaign& from, const CameraSetup& setup) {
     return campaign;
 }
 
+/// Several instruments, of which each further one has its own campaign of the same robot. Where
+/// its frame is in the first one's follows from the two bases; it is unknown, or known.
+inline Campaign combined_campaign(const Campaign& first, const std::vector<Campaign>& others,
+                                  bool are_frames_known = false) {
+    std::vector<SensorPart> parts{{first.sensor}};
+    std::vector<VectorXd> unknowns{first.nominal.sensor};
+    std::vector<Isometry3d> frames{Isometry3d::Identity()};
+    for (const Campaign& other : others) {
+        frames.push_back(first.nominal.world_from_base * other.nominal.world_from_base.inverse());
+        parts.push_back({other.sensor, are_frames_known ? std::optional(frames.back())
+                                                        : std::optional<Isometry3d>()});
+        unknowns.push_back(other.nominal.sensor);
+    }
+    const auto sensor = std::make_shared<CombinedSensor>(std::move(parts));
+    return with_sensor(first, sensor, sensor->unknowns(unknowns, frames));
+}
+
+/// A tracker elsewhere, which sees one more target.
+inline Campaign second_tracker(const Campaign& from) {
+    Campaign campaign =
+        with_sensor(from,
+                    std::make_shared<PointSensor>(std::vector<std::optional<Vector3d>>(1),
+                                                  LaserTrackerNoise{1e-5, 4e-5}),
+                    Vector3d(0.22, -0.07, -0.09));
+    campaign.nominal.world_from_base = Eigen::Translation3d(-1.5, 2.0, 0.3) *
+                                       Eigen::AngleAxisd(1.9, Vector3d(-1, 2, 1).normalized());
+    return campaign;
+}
+
+/// Three known planes about the robot, in a frame of their own, touched by one tip.
+inline Campaign touched_planes(const Campaign& from) {
+    std::vector<Plane> planes{{{0, 0, 1}, -0.4}, {{1, 0.1, 0}, 3}, {{0.2, 1, -0.3}, -1.5}};
+    for (Plane& plane : planes) plane.normal_is_known = plane.offset_is_known = true;
+    const Targets tip(std::vector<std::optional<Vector3d>>{std::nullopt});
+    Campaign campaign = with_sensor(from, std::make_shared<PlaneSensor>(tip, planes, 5e-5),
+                                    Vector3d(0.25, 0.03, 0.08));
+    campaign.nominal.world_from_base = Eigen::Translation3d(0.3, -0.2, 0.1) *
+                                       Eigen::AngleAxisd(-0.6, Vector3d(1, -1, 2).normalized());
+    return campaign;
+}
+
+inline std::vector<SensorCampaign> combined_campaigns(const Chain& robot) {
+    const Campaign points = tracked_campaign(robot);
+    const Campaign camera = before_camera(points, fixed_camera());
+    Isometry3d tool(Eigen::AngleAxisd(2.5, Vector3d(1, -2, 0.5).normalized()));
+    tool.translation() = Vector3d(0.1, -0.05, 0.2);
+    Campaign poses = with_sensor(
+        points, std::make_shared<PoseSensor>(std::nullopt, IsotropicNoise{5e-5}, 1e-4),
+        tool_unknowns(tool));
+    poses.nominal.world_from_base = second_tracker(points).nominal.world_from_base;
+    return {{"two trackers", combined_campaign(points, {second_tracker(points)})},
+            {"tracker and camera", combined_campaign(points, {camera})},
+            {"tracker and planes", combined_campaign(points, {touched_planes(points)})},
+            {"camera and planes, frame known",
+             combined_campaign(before_camera(points, camera_on_flange()),
+                               {touched_planes(points)}, true)},
+            {"poses and points", combined_campaign(poses, {points})},
+            {"tracker, camera roughly known and planes",
+             combined_campaign(points, {before_camera(points, camera_before_cube()),
+                                        touched_planes(points)})}};
+}
+
 inline std::vector<SensorCampaign> campaigns_of_every_sensor(const Chain& robot) {
     const Campaign points = tracked_campaign(robot);
     const PointNoise tracker = LaserTrackerNoise{1e-5, 4e-5};
@@ -182,6 +244,7 @@ inline std::vector<SensorCampaign> campaigns_of_every_sensor(const Chain& robot)
     all.push_back({"two cameras on the flange", before_camera(points, two_on_flange)});
     all.push_back(
         {"camera before markers known roughly", before_camera(points, camera_before_cube())});
+    for (SensorCampaign& several : combined_campaigns(robot)) all.push_back(std::move(several));
     return all;
 }
 

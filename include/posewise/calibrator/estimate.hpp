@@ -195,7 +195,7 @@ struct Correlation {
 std::vector<Correlation> strongest_correlations(const Estimate& estimate, Index count);
 
 /// Observed minus predicted for every target seen in every sample, one per row: targets seen x
-/// rows_per_target(), m or rad.
+/// rows_per_target(), m or rad; NaN for a number that a target does not have.
 RowMatrixXd residuals(const Campaign& campaign, const Parameters& parameters,
                       const Measurements& measurements);
 /// Residuals of the means of each configuration.

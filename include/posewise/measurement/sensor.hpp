@@ -11,6 +11,8 @@
 
 namespace posewise {
 
+class Sensor;
+
 /// Which targets each pose (or each sample) shows: poses x targets, stored like RowMatrixXd.
 using Seen = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -35,6 +37,8 @@ SeenTargets seen_targets(const std::vector<Index>& targets, Index target_count);
 
 /// Rows of an observation that belong to the targets seen, `rows_per_target` each. Ascending.
 std::vector<Index> seen_rows(const SeenTargets& is_seen, Index rows_per_target);
+/// The same of a sensor, whose targets may have different numbers.
+std::vector<Index> seen_rows(const Sensor& sensor, const SeenTargets& is_seen);
 
 /// Numbers of the targets seen as text, from 1: "1 3".
 std::string target_numbers(const SeenTargets& is_seen);
@@ -185,6 +189,8 @@ class Sensor {
     /// Whether the numbers that count as angles are places in an image, thousands of pixels. What
     /// the model cannot express then reaches them as a motion of the flange alone.
     virtual bool has_pixels() const { return false; }
+    /// Whether there is nothing else: a camera alone.
+    bool has_only_pixels() const { return has_pixels() && !has_lengths(); }
     /// Units of the lengths in an observation, or of its other numbers.
     const AmountUnits& units(bool of_angles) const {
         return of_angles && has_pixels() ? pixel_units : units_of(of_angles);
@@ -211,10 +217,24 @@ class Sensor {
 
     /// An observation holds row_count() / target_count() numbers for each, one after another; the
     /// errors of two are independent. A multiple of targets().count(); those of one point are
-    /// consecutive.
+    /// consecutive. Only where is_combined() says so it is otherwise.
     virtual Index target_count() const { return targets().count(); }
-    Index rows_per_target() const { return row_count() / target_count(); }
-    Index lengths_per_target() const { return rows_per_target() - count_angles() / target_count(); }
+    /// Whether several instruments make an observation: CombinedSensor, whose targets have as many
+    /// numbers each as their own instrument returns.
+    virtual bool is_combined() const { return false; }
+    /// The row of an observation where a target's numbers begin; of target_count() their end.
+    virtual Index first_row(Index target) const { return target * rows_per_target(); }
+    Index rows_of(Index target) const { return first_row(target + 1) - first_row(target); }
+    /// The target whose number is in this row.
+    virtual Index target_of(Index row) const { return row / rows_per_target(); }
+    /// Columns of residuals(), one row a target, lengths first; where targets have different
+    /// numbers as many lengths as any has, then as many angles.
+    virtual Index rows_per_target() const { return row_count() / target_count(); }
+    virtual Index lengths_per_target() const {
+        return rows_per_target() - count_angles() / target_count();
+    }
+    /// The column for the number in this row.
+    virtual Index column_of(Index row) const { return row % rows_per_target(); }
     /// Names of the contacts, for a sensor whose poses show only that the robot touches one of
     /// these: all readings are 0, and files have a column of these names instead. Empty: readings
     /// differ.
@@ -238,14 +258,22 @@ class Sensor {
     /// How many targets a pose must show for a sensor with a view.
     virtual Index least_in_view() const { return 1; }
     /// Index in targets() of the point that a target belongs to.
-    Index point_of(Index target) const { return target * targets().count() / target_count(); }
+    virtual Index point_of(Index target) const {
+        return target * targets().count() / target_count();
+    }
     /// Position of a target's point in the flange frame, m.
     Vector3d target_position(Index target, const VectorXd& unknowns) const {
         return targets().position(point_of(target), unknowns);
     }
-    /// How many positions count where accuracy is predicted: one a target, but of pixels one for
-    /// each of targets(), since all corners belong to one body.
-    Index position_count() const { return has_pixels() ? targets().count() : target_count(); }
+    /// How many positions count where accuracy is predicted: one a target, but of pixels and of
+    /// several instruments one for each of targets(), since all corners belong to one body.
+    Index position_count() const {
+        return counts_points() ? targets().count() : target_count();
+    }
+    /// One of these in the flange frame, m.
+    Vector3d counted_position(Index position, const VectorXd& unknowns) const {
+        return targets().position(counts_points() ? position : point_of(position), unknowns);
+    }
     /// Derivative of the targets' world positions, whatever is measured of them: as
     /// differentiate(), with 3 * target_count() rows in m, or 3 * targets().count() for these.
     void differentiate_positions(const Isometry3d& world_from_flange, const TwistMatrix& twists,
@@ -309,6 +337,7 @@ class Sensor {
 
   private:
     Index count_angles() const;
+    bool counts_points() const { return has_pixels() || is_combined(); }
 };
 
 }  // namespace posewise

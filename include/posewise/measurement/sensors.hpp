@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -362,6 +363,129 @@ class SocketSensor final : public Sensor {
     bool are_known_;
     double sigma_;
     std::vector<Index> unknown_index_;  ///< index of each socket's first unknown
+};
+
+/// One of several instruments that measure together.
+struct SensorPart {
+    std::shared_ptr<const Sensor> sensor;
+    /// Where its frame is in the first one's; nothing: six unknowns. The identity: it is the same.
+    std::optional<Isometry3d> known_frame = Isometry3d::Identity();
+    /// Whether nominal values of its unknowns are stated, if only roughly, and that of its frame.
+    bool has_nominal_unknowns = true;
+    bool has_nominal_frame = true;
+};
+
+/// Several instruments that see the robot, each as it does alone: a tracker and a camera, or two
+/// trackers. An observation holds theirs one after another, each target is seen or missed by
+/// itself, their noise is independent. The world is the first one's frame. Unknowns: of all parts
+/// those whose sizes are known, then the coordinates of targets, then the others, and where the
+/// frame of each further one is in the first one's (position and rotation vector, sensor2.x to
+/// sensor2.rz). Names of a part that another one before it has begin with its number: s2_p1_x,
+/// sensor2.target1.x.
+class CombinedSensor final : public Sensor {
+  public:
+    /// Throws InputError if there are fewer than two, if one is combined itself or is touched
+    /// (has_contacts()), records the inverse of poses, if more than one sees pixels or one beside
+    /// angles, or if the first one's known frame is not the identity.
+    explicit CombinedSensor(std::vector<SensorPart> parts);
+
+    Index part_count() const { return static_cast<Index>(parts_.size()); }
+    const SensorPart& part(Index part) const { return of(part).stated; }
+    /// The part that observes a target, and its first target.
+    Index part_of(Index target) const;
+    Index first_target(Index part) const { return of(part).first_target; }
+    Index first_row_of(Index part) const { return of(part).first_row; }
+    /// The unknowns of one part, from all.
+    VectorXd unknowns_of(Index part, const VectorXd& unknowns) const;
+    /// All unknowns from those of each part and where its frame is in the first one's.
+    VectorXd unknowns(const std::vector<VectorXd>& of_parts,
+                      const std::vector<Isometry3d>& frames) const;
+    /// Where a part's frame is in the first one's.
+    Isometry3d frame(Index part, const VectorXd& unknowns) const;
+
+    const Targets& targets() const override { return targets_; }
+    std::optional<double> target_radius() const override;
+    Index row_count() const override { return row_count_; }
+    Index target_count() const override { return static_cast<Index>(first_rows_.size()) - 1; }
+    bool is_combined() const override { return true; }
+    Index first_row(Index target) const override {
+        return first_rows_[static_cast<std::size_t>(target)];
+    }
+    Index target_of(Index row) const override;
+    Index rows_per_target() const override { return lengths_ + angles_; }
+    Index lengths_per_target() const override { return lengths_; }
+    Index column_of(Index row) const override;
+    Index point_of(Index target) const override;
+    bool is_angle(Index row) const override;
+    bool is_distance(Index row) const override;
+    bool has_pixels() const override;
+    std::vector<std::string> observation_names() const override;
+    std::vector<std::string> unknown_names() const override;
+    std::vector<bool> unknown_is_angle() const override;
+    std::vector<const AmountUnits*> unknown_units() const override;
+    VectorXd unknown_sizes() const override;
+    using Sensor::covariance;
+    using Sensor::deviate;
+    using Sensor::deviation;
+    using Sensor::predict;
+    void predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                 Eigen::Ref<VectorXd> observation) const override;
+    void differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                       const VectorXd& unknowns,
+                       Eigen::Ref<RowMatrixXd> J_measured_parameters) const override;
+    void differentiate_along(const Isometry3d& world_from_flange, const TwistMatrix& twists,
+                             const Twist& direction, const TwistMatrix& twist_rates,
+                             const VectorXd& unknowns,
+                             Eigen::Ref<RowMatrixXd> J_rate) const override;
+    void covariance(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                    Eigen::Ref<MatrixXd> covariance) const override;
+    MatrixXd covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
+                             const VectorXd& unknowns) const override;
+    bool has_constant_covariance() const override;
+    void deviation(const ConstNumbers& observation, const ConstNumbers& reference,
+                   Eigen::Ref<VectorXd> deviation) const override;
+    void deviate(const ConstNumbers& reference, const ConstNumbers& deviation,
+                 Eigen::Ref<VectorXd> observation) const override;
+    bool has_view() const override;
+    bool is_readable(Index target, const ConstNumbers& observation) const override;
+    /// A part that shows fewer than the least it needs shows none.
+    void view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
+                         Eigen::Ref<VectorXd> clearances) const override;
+    /// Each part with a view must see what it needs.
+    Index least_in_view() const override;
+    bool needs_first_guess() const override;
+    std::vector<NoiseNumber> noise_numbers() const override;
+    SensorWords words() const override;
+
+  private:
+    struct Part {
+        SensorPart stated;
+        Index first_row = 0;
+        Index first_target = 0;
+        Index first_point = 0;
+        Index lengths = 0;              ///< a target
+        std::vector<Index> unknowns{};  ///< index of each among all
+        Index frame = -1;               ///< of the first of six; -1: it is known
+        bool has_own_rows = true;       ///< their names are no other part's
+        bool has_own_unknowns = true;
+        const Sensor& sensor() const { return *stated.sensor; }
+    };
+    const Part& of(Index part) const { return parts_[static_cast<std::size_t>(part)]; }
+    const Part& of_row(Index row) const;
+    /// Twists by the frame's unknowns in the frame of a part, six of them.
+    TwistMatrix frame_twists(const Part& part, const VectorXd& unknowns) const;
+    /// Of a part's derivative its rows and columns among all.
+    void take_in(const Part& part, const RowMatrixXd& J, Index twists,
+                 Eigen::Ref<RowMatrixXd> J_all) const;
+    Isometry3d part_from_first(const Part& part, const VectorXd& unknowns) const;
+
+    std::vector<Part> parts_;
+    Targets targets_;
+    std::vector<Index> first_rows_;  ///< of each target, and the end
+    Index row_count_ = 0;
+    Index unknown_count_ = 0;
+    Index lengths_ = 0;  ///< the most a target has
+    Index angles_ = 0;
 };
 
 }  // namespace posewise

@@ -126,6 +126,14 @@ struct WithoutOutliers {
     std::optional<double> held_out_angle_rms{};
 };
 
+/// What one of several instruments is missed by, in its own unit.
+struct SensorAccuracy {
+    std::string readings;                            ///< "points", "corners"
+    const AmountUnits* units = &length_units;        ///< of Metrics::rms()
+    Metrics nominal, fit;                            ///< all samples
+    std::optional<Metrics> held_out{};
+};
+
 /// A calibration: parameters, their uncertainty, and the robot's accuracy with them.
 struct Calibration {
     /// As calibrated, with the model error found and sizes learned: names, units and scales of
@@ -146,6 +154,7 @@ struct Calibration {
     Index starts_at_best = 0;                    ///< for Global; only one: there may be better ones
     Metrics nominal;                             ///< only base and targets fitted, all samples
     RowMatrixXd nominal_residuals;               ///< like residuals(), for the same fit
+    std::vector<SensorAccuracy> by_sensor;       ///< of a CombinedSensor each, else empty
     std::optional<Repeatability> repeatability;  ///< nothing: no configuration was repeated
     std::optional<CrossValidation> held_out;
     std::optional<RmsInterval> held_out_interval;  ///< 95 %, of the samples' RMS

@@ -265,7 +265,12 @@ CampaignFile parse(const std::string& content, const std::string& path,
     campaign.model_error_orientation = population.model_error_orientation;
     campaign.known_within = population.within;
     campaign.joint_repeatability = robot.joint_repeatability;
-    const detail::SensorSection sensor = read_sensor(map.require("sensor"));
+    const std::optional<YamlValue> sensors = map.find("sensors");
+    if (sensors && map.find("sensor")) {
+        throw sensors->error("is stated beside 'sensor'; must be one of them");
+    }
+    const detail::SensorSection sensor =
+        sensors ? read_sensors(*sensors) : read_sensor(map.require("sensor"));
     campaign.sensor = sensor.sensor;
     campaign.nominal.sensor = sensor.unknowns;
     campaign.has_nominal_targets = sensor.has_positions;
@@ -298,7 +303,7 @@ CampaignFile parse(const std::string& content, const std::string& path,
         campaign.spread = read_spread(*spread, campaign, !errors);
     }
     // What a lens or a board leaves over would be taken for the robot's: measured, 14 % worse.
-    campaign.spread.is_open = !campaign.sensor->has_pixels();
+    campaign.spread.is_open = !campaign.sensor->has_only_pixels();
     if (const auto sizes = map.find("sizes")) {
         if (!sizes->is_text("learned") && !sizes->is_text("stated")) {
             throw sizes->error("is " + detail::quote(sizes->text()) +

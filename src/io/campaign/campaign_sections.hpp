@@ -39,6 +39,8 @@ struct SensorSection {
     std::vector<Index> reached = {};
 };
 SensorSection read_sensor(const YamlValue& sensor);
+/// Several that measure together, a list.
+SensorSection read_sensors(const YamlValue& sensors);
 /// Of kind camera.
 SensorSection read_camera(const YamlValue& sensor);
 

@@ -7,7 +7,11 @@ const YamlKeys file{
     {
         {"name", "", "one line of text", "required", "`arm in cell 4`"},
         {"robot", "", "see below", "required", ""},
-        {"sensor", "", "see below", "required", ""},
+        {"sensor", "", "see below", "required, or `sensors`", ""},
+        {"sensors", "",
+         "instead of it several that measure the same robot together, a list with the keys of "
+         "`sensor` each; not sockets, and of those with pixels or poses one camera or poses",
+         "one alone", "`[{kind: points, ...}, {kind: camera, ...}]`"},
         {"base", "", "where the instrument sees the robot's base",
          "made up; simulations need it, plans and random candidates where what poses tell depends "
          "on it (a tracker's noise, lines of sight, distances, planes)",
@@ -183,6 +187,11 @@ const YamlKeys sensor{
     {
         {"kind", "", "`points`, `poses`, `camera`, `distances`, `planes` or `sockets`", "required",
          "`points`"},
+        {"frame", "",
+         "of a further one of `sensors`: where its own frame is in that of the first (of a camera "
+         "on the flange the board is its frame); `first`: it is the same",
+         "unknown: found, but must be stated to plan and to simulate",
+         "`{position_mm: [3000, 0, 0], rpy_deg: [0, 0, 90]}`"},
         {"sigma_mm", "points, poses, distances, planes and sockets",
          "standard deviation of one coordinate or length; of points and poses also one for each "
          "axis",
@@ -331,17 +340,17 @@ const YamlKeys places{
     {
         {"count", "targets", "number of targets, all at unknown places", "this or `position_mm`",
          "`3`"},
-        {"position_mm", "targets, tool, place, anchors, socket and base",
+        {"position_mm", "targets, tool, place, frame, anchors, socket and base",
          "where they are expected (targets, tool and place in the flange frame, anchors and base "
-         "in the instrument's)",
+         "in the instrument's, a sensor's frame in that of the first one)",
          "", "`[[0, 0, 50]]`"},
         {"radius_mm", "targets",
          "of points and distances: the ball's, a body that keeps off the cell's obstacles; 0: a "
          "flat mark",
          "19.05", "`6.35`"},
-        {"rpy_deg", "tool, place and base", "roll, pitch and yaw about the fixed axes x, y and z",
+        {"rpy_deg", "tool, place, frame and base", "roll, pitch and yaw about the fixed axes x, y and z",
          "required", "`[0, 0, 180]`"},
-        {"known", "targets, tool, place, anchors and base",
+        {"known", "targets, tool, place, frame, anchors and base",
          "fixed as stated: `true`, or the axes that are (targets: x, y, z; base: x, y, z, rx, ry, "
          "rz)",
          "`false`", "`[z]`"},

@@ -403,9 +403,7 @@ YamlValue kind_of(const YamlValue& sensor) {
     return YamlMap(sensor, keys::sensor).require("kind");
 }
 
-}  // namespace
-
-SensorSection read_sensor(const YamlValue& value) {
+SensorSection read_kind(const YamlValue& value) {
     const YamlValue kind = kind_of(value);
     const std::string name = kind.text();
     std::vector<std::string> names;
@@ -414,6 +412,77 @@ SensorSection read_sensor(const YamlValue& value) {
         names.emplace_back(known);
     }
     throw kind.error("is " + quote(name) + "; " + suggest(name, names));
+}
+
+/// Where a further sensor's frame is in the first one's.
+struct FrameSection {
+    std::optional<Isometry3d> known;
+    Isometry3d nominal = Isometry3d::Identity();
+    bool is_stated = false;
+};
+
+FrameSection read_sensor_frame(const YamlValue& sensor, bool is_first) {
+    std::optional<YamlValue> value;
+    for (const YamlEntry& entry : sensor.entries()) {
+        if (entry.key == "frame") value = entry.value;
+    }
+    const Isometry3d same = Isometry3d::Identity();
+    if (is_first && value) {
+        throw value->error("is of the first sensor, whose frame is the world; must be left out");
+    }
+    if (is_first) return {same, same, true};
+    if (!value) return {};
+    if (value->is_text("first")) return {same, same, true};
+    if (!value->is_map()) {
+        throw value->error("must be first (the same as the first sensor's) or a map with "
+                           "position_mm and rpy_deg");
+    }
+    const YamlMap map(*value, keys::places, "frame");
+    const Isometry3d frame = read_frame(map);
+    if (is_true(map, "known")) return {frame, frame, true};
+    return {std::nullopt, frame, true};
+}
+
+}  // namespace
+
+SensorSection read_sensor(const YamlValue& value) {
+    for (const YamlEntry& entry : value.entries()) {
+        if (entry.key != "frame") continue;
+        throw entry.value.error("is of a further one of several sensors (key 'sensors'); must be "
+                                "left out");
+    }
+    return read_kind(value);
+}
+
+SensorSection read_sensors(const YamlValue& list) {
+    const std::vector<YamlValue> values = list.list();
+    constexpr std::size_t most = 8;
+    if (values.size() < 2 || values.size() > most) {
+        throw list.error(fmt::format("lists {} sensor{}; must be from 2 to {} (one alone is stated "
+                                     "as 'sensor')",
+                                     values.size(), values.size() == 1 ? "" : "s", most));
+    }
+    std::vector<SensorPart> parts;
+    std::vector<VectorXd> unknowns;
+    std::vector<Isometry3d> frames;
+    bool has_positions = true;
+    for (const YamlValue& value : values) {
+        SensorSection section = read_kind(value);
+        FrameSection frame = read_sensor_frame(value, parts.empty());
+        const bool has_frame = frame.known || frame.is_stated;
+        has_positions = has_positions && section.has_positions && has_frame;
+        parts.push_back(
+            {std::move(section.sensor), frame.known, section.has_positions, frame.is_stated});
+        unknowns.push_back(std::move(section.unknowns));
+        frames.push_back(frame.nominal);
+    }
+    try {
+        auto sensor = std::make_shared<CombinedSensor>(std::move(parts));
+        VectorXd all = sensor->unknowns(unknowns, frames);
+        return {std::move(sensor), std::move(all), has_positions};
+    } catch (const InputError& error) {
+        throw list.error(std::string("cannot be used: ") + error.what());
+    }
 }
 
 }  // namespace posewise::detail

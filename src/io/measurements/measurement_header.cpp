@@ -67,7 +67,7 @@ class HeaderReader {
   private:
     /// Of pixels: a row a corner, unless columns of the first corners say otherwise.
     static Form form_of(const CsvReader& csv, const Campaign& campaign, Content content) {
-        if (!campaign.sensor->has_pixels() || content != Content::JointsAndObservations) {
+        if (!campaign.sensor->has_only_pixels() || content != Content::JointsAndObservations) {
             return Form::RowEachSample;
         }
         const auto names = campaign.sensor->observation_names();

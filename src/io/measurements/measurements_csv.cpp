@@ -39,7 +39,6 @@ class RowReader {
           contacts_(campaign.sensor->contact_names()),
           field_of_joint_(static_cast<std::size_t>(campaign.robot.configuration_size())),
           field_of_observation_(static_cast<std::size_t>(campaign.sensor->row_count())),
-          camera_(dynamic_cast<const CameraSensor*>(campaign.sensor.get())),
           corners_(campaign),
           is_each_row_one_(content == Content::Program &&
                            std::none_of(columns_.begin(), columns_.end(), [](const auto& column) {
@@ -273,9 +272,9 @@ class RowReader {
     /// The cells of a target that was not seen are empty, all of them.
     void read_target(Index target) {
         const auto width = orientation_fields_.empty()
-                               ? static_cast<std::size_t>(campaign_.sensor->rows_per_target())
+                               ? static_cast<std::size_t>(campaign_.sensor->rows_of(target))
                                : field_of_observation_.size();
-        const std::size_t first = width * static_cast<std::size_t>(target);
+        const auto first = static_cast<std::size_t>(campaign_.sensor->first_row(target));
         std::vector<std::size_t> fields(orientation_fields_);
         for (std::size_t k = first; k < first + width; ++k) {
             fields.push_back(field_of_observation_[k]);
@@ -296,9 +295,10 @@ class RowReader {
             row_.observation[static_cast<Index>(k)] = read_number(field_of_observation_[k]);
             check_distance(k);
         }
-        if (camera_ != nullptr) {
-            check_in_image(row_.observation.segment<2>(2 * target),
-                           target / camera_->corner_count(), first);
+        const auto [camera, number] = camera_of(target);
+        if (camera != nullptr) {
+            check_in_image(row_.observation.segment<2>(static_cast<Index>(first)),
+                           camera->camera(number), first);
         }
         if (!orientation_fields_.empty()) row_.observation.segment<3>(3) = read_orientation();
     }
@@ -318,6 +318,18 @@ class RowReader {
                 columns_[field].role == Role::Point ? detail::point_column : detail::camera_column,
                 detail::quote(csv_.fields()[field]), of_what, first, last,
                 number.ok() && number.value == 0 && first == 1 ? at_zero : ""));
+    }
+
+    /// The sensor that sees a target, if it is a camera, and the number of its camera.
+    std::pair<const CameraSensor*, Index> camera_of(Index target) const {
+        const Sensor* sensor = campaign_.sensor.get();
+        if (const auto* const combined = dynamic_cast<const CombinedSensor*>(sensor)) {
+            const Index part = combined->part_of(target);
+            sensor = combined->part(part).sensor.get();
+            target -= combined->first_target(part);
+        }
+        const auto* const camera = dynamic_cast<const CameraSensor*>(sensor);
+        return {camera, camera == nullptr ? 0 : target / camera->corner_count()};
     }
 
     /// The camera of the row at hand, counted from 0.
@@ -343,7 +355,7 @@ class RowReader {
                               {},      {}};
         corner.place << read_number(field_of_observation_[0]),
             read_number(field_of_observation_[1]);
-        check_in_image(corner.place, camera, 0);
+        check_in_image(corner.place, camera_of(0).first->camera(camera), 0);
         for (const std::size_t joint : field_of_joint_)
             corner.locations.push_back(csv_.locate(joint));
         return corner;
@@ -351,11 +363,12 @@ class RowReader {
 
     /// To a pixel, or as far as its noise takes a corner. `first`: the field's index among the
     /// observed numbers.
-    void check_in_image(const Vector2d& place, Index camera, std::size_t first) const {
-        if (camera_ == nullptr || !camera_->camera(camera).image) return;
-        const auto& image = camera_->camera(camera).image;
+    void check_in_image(const Vector2d& place, const SingleCamera& camera,
+                        std::size_t first) const {
+        if (!camera.image) return;
+        const auto& image = camera.image;
         const Vector2d px = 1e3 * place;
-        const double margin = std::max(1.0, 5 * camera_->camera(camera).sigma);
+        const double margin = std::max(1.0, 5 * camera.sigma);
         const auto is_inside = [&](double value, double size) {
             return value >= -margin && value <= size + margin;
         };
@@ -440,7 +453,6 @@ class RowReader {
     std::optional<std::size_t> field_of_purpose_;
     std::optional<std::size_t> field_of_point_;
     std::optional<std::size_t> field_of_camera_;
-    const CameraSensor* camera_;
     detail::CornerCollector corners_;
     bool is_via_ = false;  ///< the row at hand
     std::vector<std::string> purposes_;

@@ -33,11 +33,11 @@ std::string observation_cells(const Sensor& sensor, const Measurements& measurem
     Index row = 0;
     for (Index target = 0; target < measurements.is_seen.cols(); ++target) {
         const bool is_seen = measurements.is_seen(sample, target);
-        for (const double value : measurements.observation(sample, target)) {
-            const bool is_in_rad =
-                detail::quantity_of_row(sensor, row++) == detail::Quantity::Angle;
+        for (; row < sensor.first_row(target + 1); ++row) {
+            const bool is_in_rad = detail::quantity_of_row(sensor, row) == detail::Quantity::Angle;
             const double factor = is_in_rad ? 1 : 1e3;
-            cells += is_seen ? fmt::format(",{}", factor * value) : ",";
+            cells +=
+                is_seen ? fmt::format(",{}", factor * measurements.observations(sample, row)) : ",";
         }
     }
     return cells;
@@ -58,12 +58,14 @@ void write_corners(const Sensor& sensor, const Measurements& measurements, Index
     }
 }
 
-bool is_finite(const Measurements& measurements) {
+bool is_finite(const Sensor& sensor, const Measurements& measurements) {
     if (!measurements.configurations.allFinite()) return false;
     for (Index sample = 0; sample < measurements.is_seen.rows(); ++sample) {
         for (Index target = 0; target < measurements.is_seen.cols(); ++target) {
             if (measurements.is_seen(sample, target) &&
-                !measurements.observation(sample, target).allFinite()) {
+                !measurements.observations.row(sample)
+                     .segment(sensor.first_row(target), sensor.rows_of(target))
+                     .allFinite()) {
                 return false;
             }
         }
@@ -78,7 +80,7 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
                             const std::vector<std::string>& comment_lines) {
     Measurements measurements = observed;
     if (records_inverse(*campaign.sensor)) invert_poses(measurements.observations);
-    if (!is_finite(measurements)) {
+    if (!is_finite(*campaign.sensor, measurements)) {
         throw input_error_at({path},
                              "is not written, since a measurement is not a finite number; the "
                              "campaign's amounts must be smaller");
@@ -90,7 +92,7 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
     }
     text += "config,sample";
     std::vector<double> joint_factors;  // to the unit written
-    const bool has_corners = campaign.sensor->has_pixels();
+    const bool has_corners = campaign.sensor->has_only_pixels();
     const auto form = has_corners ? detail::Form::RowEachCorner : detail::Form::RowEachSample;
     for (const detail::WantedColumn& column : detail::wanted_columns(campaign, form)) {
         text += ',' + column.example();

@@ -214,8 +214,17 @@ Json accuracy_to_json(const Calibration& calibration) {
     if (calibration.repeatability) {
         accuracy["repeatability_mm"] = mm * calibration.repeatability->length;
         if (calibration.nominal.has_orientation) {
-            accuracy["repeatability_mrad"] = 1e3 * calibration.repeatability->orientation;
+            const AmountUnits& units = *calibration.nominal.orientation_units;
+            accuracy["repeatability" + detail::error_suffix(units)] =
+                1e3 * calibration.repeatability->orientation;
         }
+    }
+    for (const SensorAccuracy& one : calibration.by_sensor) {
+        Json& json = accuracy["by_sensor"].emplace_back(
+            Json{{"readings", one.readings},
+                 {"nominal", detail::metrics_to_json(one.nominal)},
+                 {"fit", detail::metrics_to_json(one.fit)}});
+        if (one.held_out) json["held_out"] = detail::metrics_to_json(*one.held_out);
     }
     if (calibration.held_out) accuracy["held_out"] = held_out_to_json(*calibration.held_out);
     add_residual_answers(accuracy, calibration);

@@ -398,8 +398,20 @@ PageResiduals page_residuals(const Campaign& campaign, const Measurements& measu
                             std::move(readings),
                             {},
                             {}};
-    for (Index row = 0; row < campaign.sensor->rows_per_target(); ++row) {
-        residuals.units.push_back(&campaign.sensor->units(campaign.sensor->is_angle(row)));
+    const Sensor& sensor = *campaign.sensor;
+    if (sensor.is_combined()) {  // those that all have the same axes
+        const auto axes = static_cast<std::size_t>(
+            sensor.has_lengths() ? sensor.lengths_per_target() : sensor.rows_per_target());
+        residuals.axes.resize(axes);
+        residuals.units.assign(axes, &sensor.main_units());
+        std::erase_if(residuals.readings, [&](const ReadingResidual& one) {
+            return sensor.rows_of(one.target) != static_cast<Index>(axes) ||
+                   sensor.is_angle(sensor.first_row(one.target)) == sensor.has_lengths();
+        });
+        return residuals;
+    }
+    for (Index row = 0; row < sensor.rows_per_target(); ++row) {
+        residuals.units.push_back(&sensor.units(sensor.is_angle(row)));
     }
     residuals.images = page_images(*campaign.sensor, measurements, residuals.readings);
     return residuals;

@@ -29,14 +29,11 @@ std::vector<std::pair<Index, Index>> rows_of_configurations(const Measurements& 
 
 /// Axes that have the unit of the first: they are the first ones.
 Index main_axis_count(const Sensor& sensor) {
-    Index count = 1;
-    while (count < sensor.rows_per_target() && sensor.is_angle(count) == sensor.is_angle(0)) {
-        ++count;
-    }
-    return count;
+    return sensor.has_lengths() ? sensor.lengths_per_target() : sensor.rows_per_target();
 }
 
-/// Mean square distance of each configuration; NaN where it has no reading or one is unknown.
+/// Mean square distance of each configuration; NaN where it has no reading or one is unknown. Of
+/// several instruments those that measure no lengths do not count.
 VectorXd mean_squares(const Campaign& campaign, const Measurements& measurements,
                       const RowMatrixXd& residuals) {
     const auto rows = rows_of_configurations(measurements);
@@ -44,8 +41,19 @@ VectorXd mean_squares(const Campaign& campaign, const Measurements& measurements
     VectorXd squares(std::ssize(rows));
     for (Index i = 0; i < squares.size(); ++i) {
         const auto [first, count] = rows[static_cast<std::size_t>(i)];
-        squares[i] = residuals.middleRows(first, count).leftCols(axes).squaredNorm() /
-                     static_cast<double>(count);
+        double sum = 0;
+        double numbers = 0;
+        for (Index row = first; row < first + count; ++row) {
+            const auto own = residuals.row(row).array().isNaN();
+            const auto left = residuals.row(row).head(axes);
+            const bool is_other = own.head(axes).all() && !own.all();
+            if (is_other) continue;
+            const bool has_gaps = campaign.sensor->is_combined() && !own.all();
+            sum += has_gaps ? own.head(axes).select(0, left.array()).square().sum()
+                            : left.squaredNorm();
+            ++numbers;
+        }
+        squares[i] = sum / numbers;
     }
     return squares;
 }
@@ -144,7 +152,8 @@ std::optional<OrderTrend> find_trend(const Campaign& campaign, const RowMatrixXd
                                      const RowMatrixXd& means, const VectorXd& x) {
     constexpr double level = 0.05;
     const Index count = means.rows();
-    if (count < least_of_trend) return std::nullopt;
+    // The axes of several instruments are not alike.
+    if (count < least_of_trend || campaign.sensor->is_combined()) return std::nullopt;
     MatrixXd columns = position_columns(campaign.robot, configurations);
     OrderTrend trend;
     trend.is_beside_joints = count >= 3 * (columns.cols() + 1);

@@ -18,6 +18,7 @@
 #include "moved.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
+#include "sensor_accuracy.hpp"
 #include "task/doubt/data_faults.hpp"
 #include "task/doubt/nominal_residuals.hpp"
 #include "task/plan/workspace.hpp"
@@ -161,7 +162,7 @@ void look(const Work& work, Calibration& result) {
     }
     if (!doubts.misfit && !doubts.gross_error) return;
     const bool is_explained = doubts.misfit && (doubts.misfit->reading || doubts.misfit->image);
-    if (work.campaign.sensor->has_pixels() && is_explained) return;
+    if (work.campaign.sensor->has_only_pixels() && is_explained) return;
     doubts.look.shifted = find_shifted_rows(work.campaign, work.used);
     if (!doubts.look.shifted && !doubts.look.outlying) {
         doubts.look.outlying = find_gross_configurations(work.campaign, work.used, result.estimate);
@@ -214,6 +215,9 @@ void calibrate_with(Work& work, Calibration& result) {
     result.held_out = hold_out(work, result);
     result.without_outliers = judge_without_outliers(work, result);
     const RowMatrixXd left = residuals(work.campaign, result.estimate.parameters, work.used);
+    result.by_sensor = detail::accuracy_by_sensor(
+        *work.campaign.sensor, work.used.is_seen, result.nominal_residuals, left,
+        result.held_out ? result.held_out->residuals : RowMatrixXd());
     result.order_trend = detail::find_order_trend(work.campaign, work.used, left);
     result.condition_trends =
         detail::find_condition_trends(work.campaign, work.used, left, work.options.conditions);

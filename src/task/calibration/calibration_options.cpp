@@ -36,7 +36,7 @@ std::string judge_measured(const Campaign& campaign, const Measurements& measure
     options.stop = stop;
     constexpr Index enough = 200;  // views, of many numbers each
     const Index count = measurements.configuration_count();
-    const bool is_part = campaign.sensor->has_pixels() && count > enough;
+    const bool is_part = campaign.sensor->has_only_pixels() && count > enough;
     const Measurements part =
         is_part ? take(measurements, evenly_spaced(count, enough)) : Measurements{};
     const Calibration calibration = calibrate(campaign, is_part ? part : measurements, options);

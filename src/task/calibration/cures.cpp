@@ -109,8 +109,10 @@ bool has_terms(const Chain& robot, TermKind kind) {
 bool is_far_above_prior(const Doubted& doubted) {
     constexpr Index many = 30;  // a parameter
     const auto parameters = static_cast<Index>(doubted.estimate.names.size());
-    const Index numbers =
-        doubted.measurements.is_seen.count() * doubted.campaign.sensor->rows_per_target();
+    Index numbers = 0;
+    for (Index j = 0; j < doubted.measurements.is_seen.cols(); ++j) {
+        numbers += doubted.campaign.sensor->rows_of(j) * doubted.measurements.is_seen.col(j).count();
+    }
     return numbers > many * parameters;
 }
 
@@ -135,11 +137,13 @@ std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,
                 trials.push_back(*std::move(trial));
             }
         }
-        add({"loss cauchy"}, campaign).options.loss.kind = LossKind::Cauchy;
+        if (!campaign.sensor->is_combined()) {
+            add({"loss cauchy"}, campaign).options.loss.kind = LossKind::Cauchy;
+        }
     }
     if (options.only_exclusions) return trials;
     if (options.can_learn_sizes && has_squares && campaign.spread.is_prior &&
-        !campaign.sensor->has_pixels() && !is_far_above_prior(doubted)) {
+        !campaign.sensor->has_only_pixels() && !is_far_above_prior(doubted)) {
         CureTrial& trial = add({"sizes learned"}, campaign);
         trial.learns_sizes = true;
         trial.campaign.spread.is_open = true;

@@ -98,6 +98,15 @@ bool shows_model_error(const Campaign& campaign, const Estimate& estimate, bool 
     return ratio && *ratio > 1;
 }
 
+double targets_with_lengths(const Campaign& campaign) {
+    const Sensor& sensor = *campaign.sensor;
+    double count = 0;
+    for (Index j = 0; j < sensor.target_count(); ++j) {
+        count += sensor.is_angle(sensor.first_row(j)) ? 0 : 1;  // lengths come first
+    }
+    return count;
+}
+
 /// The campaign with the model error that its estimate has found or that its residuals show.
 Campaign with_shown_model_error(const Campaign& campaign, const Estimate& estimate) {
     constexpr Index configurations = 64;
@@ -117,8 +126,8 @@ Campaign with_shown_model_error(const Campaign& campaign, const Estimate& estima
             detail::fitting_model_error(campaign, estimate, prediction.overall, is_angle);
         if (is_angle) continue;
         // Of the logarithm of a variance; the targets of a configuration are off alike.
-        const double freedom = estimate.variance_of(is_angle).degrees_of_freedom /
-                               static_cast<double>(campaign.sensor->target_count());
+        const double freedom =
+            estimate.variance_of(is_angle).degrees_of_freedom / targets_with_lengths(campaign);
         shown.known_within.model_error = std::exp(1 / std::sqrt(2 * freedom));
     }
     return shown;

@@ -41,7 +41,8 @@ bool can_assume_places(const Campaign& campaign) {
     Campaign without = campaign;
     without.model_error_common = 0;
     return campaign.has_nominal_base ||
-           (campaign.sensor->lengths_per_target() == 3 && has_constant_noise(without));
+           (campaign.sensor->lengths_per_target() == 3 && !campaign.sensor->is_combined() &&
+            has_constant_noise(without));
 }
 
 InputError unstated_contacts(const Campaign& campaign) {

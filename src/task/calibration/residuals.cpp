@@ -4,6 +4,7 @@
 #include "measurement/noise.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "posewise/task/calibration.hpp"
 #include "posewise/task/scene.hpp"
 #include "task/doubt/nominal_residuals.hpp"
@@ -35,6 +36,22 @@ Direction direction_of(const Vector3d& point) {
             std::atan2(point.z(), std::hypot(point.x(), point.y()))};
 }
 
+/// A target's numbers, of a row of residuals().
+VectorXd own_numbers(const Sensor& sensor, Index target,
+                     const Eigen::Ref<const RowMatrixXd>& residual) {
+    VectorXd numbers(sensor.rows_of(target));
+    for (Index k = 0; k < numbers.size(); ++k) {
+        numbers[k] = residual(0, sensor.column_of(sensor.first_row(target) + k));
+    }
+    return numbers;
+}
+
+/// Whether the instrument that observes a target is where the world is: not a further one.
+bool is_seen_from_world(const Sensor& sensor, Index target) {
+    const auto* const combined = dynamic_cast<const CombinedSensor*>(&sensor);
+    return combined == nullptr || combined->part_of(target) == 0;
+}
+
 /// What is known of all readings: rows as residuals() has them.
 struct Rows {
     RowMatrixXd nominal;
@@ -44,7 +61,6 @@ struct Rows {
 std::vector<ReadingResidual> list(const Campaign& campaign, const Estimate& estimate,
                                   const Measurements& measurements, const Rows& rows) {
     const Sensor& sensor = *campaign.sensor;
-    const Index width = sensor.rows_per_target();
     const std::optional<Vector3d> instrument = instrument_position(campaign);
     std::vector<ReadingResidual> listed =
         list_residuals(campaign, estimate.parameters, measurements);
@@ -58,13 +74,15 @@ std::vector<ReadingResidual> list(const Campaign& campaign, const Estimate& esti
             const VectorXd q = measurements.configurations.row(configuration).transpose();
             deviations = residual_variances(campaign, estimate, q, motion).cwiseSqrt();
         }
-        one.nominal = rows.nominal.row(row).transpose();
-        if (rows.held_out.rows() > 0 && rows.held_out.row(row).allFinite()) {
-            one.held_out = rows.held_out.row(row).transpose();
+        one.nominal = own_numbers(sensor, one.target, rows.nominal.row(row));
+        if (rows.held_out.rows() > 0) {
+            const VectorXd held_out = own_numbers(sensor, one.target, rows.held_out.row(row));
+            if (held_out.allFinite()) one.held_out = held_out;
         }
         one.standardised =
-            one.calibrated.cwiseQuotient(deviations.segment(width * one.target, width));
-        if (instrument) {
+            one.calibrated.cwiseQuotient(deviations.segment(
+                sensor.first_row(one.target), sensor.rows_of(one.target)));
+        if (instrument && is_seen_from_world(sensor, one.target)) {
             one.direction =
                 direction_of(motion.world_from_flange *
                                  sensor.target_position(one.target, estimate.parameters.sensor) -
@@ -73,6 +91,20 @@ std::vector<ReadingResidual> list(const Campaign& campaign, const Estimate& esti
         ++row;
     }
     return listed;
+}
+
+/// Of the first target that has a number of the kind, each.
+std::vector<std::string> axes_of_several(const Sensor& sensor) {
+    const std::vector<std::string> names = sensor.observation_names();
+    std::vector<std::string> axes(static_cast<std::size_t>(sensor.rows_per_target()));
+    for (Index row = 0; row < sensor.row_count(); ++row) {
+        std::string& axis = axes[static_cast<std::size_t>(sensor.column_of(row))];
+        const std::string& name = names[static_cast<std::size_t>(row)];
+        const bool is_single = sensor.rows_of(sensor.target_of(row)) == 1;
+        const bool is_known = !axis.empty() && axis != "distance";
+        if (!is_known) axis = is_single ? "distance" : name.substr(name.rfind('_') + 1);
+    }
+    return axes;
 }
 
 }  // namespace
@@ -91,7 +123,7 @@ std::vector<ReadingResidual> list_residuals(const Campaign& campaign, const Para
                 one.configuration = i;
                 one.sample = sample;
                 one.target = target;
-                one.calibrated = all.row(row).transpose();
+                one.calibrated = own_numbers(*campaign.sensor, target, all.row(row));
             }
         }
     }
@@ -125,6 +157,7 @@ std::vector<ReadingResidual> list_residuals(const Campaign& campaign, const Esti
 
 std::vector<std::string> residual_axes(const Campaign& campaign) {
     const Index width = campaign.sensor->rows_per_target();
+    if (campaign.sensor->is_combined()) return axes_of_several(*campaign.sensor);
     if (width == 1) return {"distance"};
     std::vector<std::string> names = campaign.sensor->observation_names();
     names.resize(static_cast<std::size_t>(width));

@@ -118,9 +118,11 @@ void state_test_poses(ChoiceProblem& problem, const Campaign& campaign,
                                         RowMatrixXd(configurations.middleRows(first, size)),
                                         RowMatrixXd(repeats.middleRows(first, size)));
         part.matrix *= scale.asDiagonal();
-        const Index width = sensor.rows_per_target();
-        for (Index row = 0; row < part.matrix.rows(); ++row) {
-            part.matrix.row(row) /= deviations[sensor.is_angle(row % width) ? 1 : 0];
+        for (Index i = 0; i < size; ++i) {
+            Index row = part.first_row[static_cast<std::size_t>(i)];
+            for (const Index of_all : seen_rows(sensor, repeats.row(first + i).array() > 0)) {
+                part.matrix.row(row++) /= deviations[sensor.is_angle(of_all) ? 1 : 0];
+            }
         }
         if (is_mean) {
             made->matrix = lower_root_of_gram(stack(made->matrix, part.matrix)).transpose();

@@ -50,7 +50,7 @@ std::vector<ResidualDoubt> find_residual_doubts(const Campaign& campaign,
             const ExpectedError expected = expected_error(found, estimate, measured, is_angle);
             doubts.push_back(
                 {*ratio, is_angle,
-                 found.sensor->has_pixels()
+                 is_angle && found.sensor->has_pixels()
                      ? 0
                      : detail::fitting_model_error(found, estimate, expected, is_angle)});
         }
@@ -221,7 +221,7 @@ std::vector<std::string> find_faults(const Campaign& campaign, const Estimate& e
 Doubts find_doubts(const Campaign& campaign, const Measurements& measurements,
                    const Parameters& registered, const Metrics& nominal) {
     Doubts doubts;
-    if (campaign.sensor->has_pixels()) {
+    if (campaign.sensor->has_only_pixels()) {
         doubts.misfit = find_misfit(campaign, measurements, registered);
         const auto& misfit = doubts.misfit;
         // All else follows from it.
@@ -239,7 +239,7 @@ Doubts find_doubts(const Campaign& campaign, const Measurements& measurements,
     doubts.camera = find_camera_doubt(campaign, measured, registered);
     if (doubts.camera && doubts.camera->board_factor != 1) {
         doubts.misfit.reset();
-    } else if (!campaign.sensor->has_pixels()) {
+    } else if (!campaign.sensor->has_only_pixels()) {
         doubts.misfit = find_misfit(campaign, measured, registered);
     }
     if (!doubts.misfit) {

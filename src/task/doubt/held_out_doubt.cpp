@@ -68,7 +68,8 @@ double rms_of(const RowMatrixXd& squares, const Seen& is_judged) {
 Seen points_held_out(const Measurements& measurements, const CrossValidation& held_out) {
     Seen is_judged = times_seen(measurements).array() > 0;
     for (Index i = 0; i < is_judged.rows(); ++i) {
-        if ((held_out.squared_distances.row(i).array() == 0).all()) is_judged.row(i) = false;
+        // Not found, or of no length.
+        is_judged.row(i) = is_judged.row(i) && held_out.squared_distances.row(i).array() != 0;
     }
     return is_judged;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "camera_misfit.hpp"
 #include "core/format.hpp"
@@ -46,13 +47,19 @@ bool are_orientations_off(const Campaign& campaign, const RowMatrixXd& residuals
 }  // namespace
 
 double detail::median_distance(const RowMatrixXd& residuals) {
-    const auto coordinates = residuals.leftCols(std::min<Index>(3, residuals.cols()));
-    return quantile(coordinates.rowwise().norm(), 0.5, QuantileRule::Upper);
+    std::vector<double> distances;
+    for (Index row = 0; row < residuals.rows(); ++row) {
+        const auto numbers = residuals.row(row).head(std::min<Index>(3, residuals.cols())).array();
+        if (numbers.isNaN().all()) continue;
+        distances.push_back(std::sqrt(numbers.isNaN().select(0, numbers).square().sum()));
+    }
+    const Eigen::Map<const VectorXd> all(distances.data(), std::ssize(distances));
+    return quantile(all, 0.5, QuantileRule::Upper);
 }
 
 std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& measured,
                                   const Parameters& registered) {
-    const bool has_pixels = campaign.sensor->has_pixels();
+    const bool has_pixels = campaign.sensor->has_only_pixels();
     if (!campaign.sensor->has_lengths() && !has_pixels) return std::nullopt;  // it is not known
     Misfit misfit;
     const RowMatrixXd residuals = mean_residuals(campaign, registered, measured);
@@ -136,7 +143,7 @@ std::string describe_misfit(const Campaign& campaign, const Misfit& misfit) {
             detail::format_short(1e3 * misfit.distance, 3),
             detail::format_short(1e3 * misfit.others, 3));
     }
-    if (campaign.sensor->has_pixels() && misfit.reading) return describe(*misfit.reading);
+    if (campaign.sensor->has_only_pixels() && misfit.reading) return describe(*misfit.reading);
     return fmt::format(
         "are these of another robot? The nominal robot misses half of them by over {} {}; must be "
         "about {} {}, as the spread of {} says{}{}{}",

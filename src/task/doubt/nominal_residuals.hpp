@@ -22,6 +22,7 @@ RowMatrixXd nominal_residuals(const Campaign& campaign, const Chain& robot,
                               const LevenbergMarquardtOptions& options);
 
 /// Of residuals as mean_residuals() gives them, the median length: some may be grossly wrong.
+/// Of several instruments those that measure lengths.
 double median_distance(const RowMatrixXd& residuals);
 
 }  // namespace posewise::detail

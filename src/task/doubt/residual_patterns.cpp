@@ -87,10 +87,10 @@ PatternColumns::PatternColumns(const FittedProblem& fitted, const Parameters& pa
                                                      parameters.sensor, columns.leftCols(lengths_));
                                 for (Index row = 0; row < columns.rows(); ++row) {
                                     if (tells_lengths(sensor) && !sensor.is_angle(row) &&
-                                        means.is_seen(i, row / sensor.rows_per_target())) {
+                                        means.is_seen(i, sensor.target_of(row))) {
                                         columns(row, lengths_) = means.observations(i, row);
                                     }
-                                    const Index axis = row % sensor.rows_per_target();
+                                    const Index axis = sensor.column_of(row);
                                     if (axis < shifts) columns(row, lengths_ + 1 + axis) = 1;
                                 }
                             });

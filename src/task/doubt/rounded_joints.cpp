@@ -48,10 +48,10 @@ double effect_of(const Campaign& campaign, const Measurements& measured,
         J.resize(sensor.row_count(), campaign.robot.joint_count());
         sensor.differentiate(motion.world_from_flange, motion.joint_twists, parameters.sensor, J);
         for (Index row = 0; row < J.rows(); ++row) {
-            const Index target = row / sensor.rows_per_target();
+            const Index target = sensor.target_of(row);
             if (seen(i, target) == 0) continue;
-            if (row % sensor.rows_per_target() == 0) readings += 1;
             if (sensor.has_lengths() && sensor.is_angle(row)) continue;
+            if (row == sensor.first_row(target)) readings += 1;
             for (Index j = 0; j < J.cols(); ++j) {
                 const bool turns = campaign.robot.joint(j).motion == Motion::Rotation;
                 if (turns) squares += J(row, j) * J(row, j);
@@ -102,7 +102,7 @@ std::optional<RoundedReadings> find_rounded_readings(const Fitted& fitted) {
     for (Index sample = 0; sample < measured.observations.rows(); ++sample) {
         for (Index row = 0; row < measured.observations.cols(); ++row) {
             if (sensor.is_angle(row)) continue;
-            if (!measured.is_seen(sample, row / sensor.rows_per_target())) continue;
+            if (!measured.is_seen(sample, sensor.target_of(row))) continue;
             lengths.push_back(measured.observations(sample, row));
         }
     }

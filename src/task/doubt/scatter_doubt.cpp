@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "measurement/noise.hpp"
@@ -13,7 +14,7 @@ RowMatrixXd whitened_deviation(const Campaign& instrument, const Parameters& par
                                const VectorXd& mean) {
     const Sensor& sensor = *instrument.sensor;
     const std::vector<Index> rows =
-        seen_rows(measured.is_seen.row(sample), sensor.rows_per_target());
+        seen_rows(sensor, measured.is_seen.row(sample));
     VectorXd observed = mean;
     observed(rows) = measured.observations.row(sample).transpose()(rows);
     FlangeMotion motion;
@@ -41,8 +42,10 @@ std::optional<ScatterDoubt> find_scatter_doubt(const Campaign& campaign,
     double farthest = 0;
     ScatterDoubt doubt;
     for (Index i = 0; i < measured.configuration_count(); ++i) {
-        freedom += static_cast<double>(campaign.sensor->rows_per_target()) *
-                   (times.row(i).array() - 1).max(0).sum();
+        for (Index j = 0; j < times.cols(); ++j) {
+            freedom += static_cast<double>(campaign.sensor->rows_of(j)) *
+                       std::max(0.0, times(i, j) - 1);
+        }
         if (measured.sample_count(i) < 2) continue;
         const VectorXd q = measured.configurations.row(i).transpose();
         const VectorXd mean = means.observations.row(i).transpose();

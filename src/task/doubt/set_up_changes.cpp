@@ -37,17 +37,16 @@ Part part_of_target(const Fitted& fitted, const PatternColumns& columns, Index t
 }
 
 /// Readings of one target, or of one socket that the ball touches, along the instrument's axes.
-Part part_of_readings(const PatternColumns& columns, const LinearFit& fit, const RowMatrixXd& seen,
-                      Index target) {
+Part part_of_readings(const Sensor& sensor, const PatternColumns& columns, const LinearFit& fit,
+                      const RowMatrixXd& seen, Index target) {
     const RowMatrixXd shift = columns.shift();
     Part part{"", RowMatrixXd::Zero(shift.rows(), shift.cols()), {}};
     for (Index i = 0; i < fit.count(); ++i) {
         if (seen(i, target) == 0) continue;
         part.members.push_back(i);
-        const auto count = static_cast<Index>((seen.row(i).array() > 0).count());
-        const Index width = fit.rows(i) / count;
-        const auto before = static_cast<Index>((seen.row(i).head(target).array() > 0).count());
-        const Index row = fit.begin(i) + width * before;
+        Index row = fit.begin(i);
+        for (Index j = 0; j < target; ++j) row += seen(i, j) > 0 ? sensor.rows_of(j) : 0;
+        const Index width = sensor.rows_of(target);
         part.X.middleRows(row, width) = shift.middleRows(row, width);
     }
     return part;
@@ -61,11 +60,13 @@ std::vector<Part> list_parts(const Fitted& fitted, const PatternColumns& columns
         Part part = part_of_target(fitted, columns, target);
         if (part.X.cols() > 0) parts.push_back(std::move(part));
     }
-    if (columns.shift().cols() == 0 || sensor.target_count() == 1) return parts;
+    // A shift is one of the world's axes, which only the first of several instruments has.
+    const bool has_shifts = columns.shift().cols() > 0 && !sensor.is_combined();
+    if (!has_shifts || sensor.target_count() == 1) return parts;
     const std::vector<std::string> contacts = sensor.contact_names();
     const RowMatrixXd seen = times_seen(fitted.measured);
     for (Index k = 0; k < sensor.target_count(); ++k) {
-        Part part = part_of_readings(columns, fit, seen, k);
+        Part part = part_of_readings(sensor, columns, fit, seen, k);
         part.name = "readings of target" + std::to_string(k + 1);
         if (sensor.has_contacts()) {
             part.name = "socket " + contacts[static_cast<std::size_t>(k)];

@@ -177,13 +177,14 @@ std::optional<Vector3d> instrument_position(const Campaign& campaign) {
 std::vector<std::string> reading_names(const Campaign& campaign) {
     const Sensor& sensor = *campaign.sensor;
     if (sensor.has_contacts()) return sensor.contact_names();
-    const bool are_targets = sensor.target_count() == sensor.targets().count();
+    const bool are_targets =
+        sensor.target_count() == sensor.targets().count() && !sensor.is_combined();
     const std::vector<std::string> numbers = sensor.observation_names();
     std::vector<std::string> names;
     for (Index k = 0; k < sensor.target_count(); ++k) {
         names.push_back(are_targets
                             ? "target" + std::to_string(k + 1)
-                            : numbers[static_cast<std::size_t>(k * sensor.rows_per_target())]);
+                            : numbers[static_cast<std::size_t>(sensor.first_row(k))]);
     }
     return names;
 }

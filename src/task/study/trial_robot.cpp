@@ -67,7 +67,7 @@ RowMatrixXd target_positions(const Campaign& campaign, const Parameters& paramet
     RowMatrixXd positions(configurations.rows(), 3 * targets);
     std::vector<Vector3d> on_flange;
     for (Index j = 0; j < targets; ++j) {
-        on_flange.push_back(sensor.target_position(j, parameters.sensor));
+        on_flange.push_back(sensor.counted_position(j, parameters.sensor));
     }
     Index i = 0;
     for (const Isometry3d& flange :
