@@ -10,10 +10,10 @@ namespace {
 
 /// One configuration's lengths (or angles, where none is measured) of the targets it shows.
 struct Visit {
-    VectorXd times;      ///< samples that show each, a number a row
-    VectorXd residuals;  ///< of the means, m or rad
+    VectorXd times;             ///< samples that show each, a number a row
+    VectorXd residuals;         ///< of the means, m or rad
     std::vector<Index> axes{};  ///< directions of these, alike for all targets; -1: its own
-    MatrixXd known;      ///< covariance of one sample by the parameters and by noise
+    MatrixXd known;             ///< covariance of one sample by the parameters and by noise
 };
 
 /// What single samples at measured configurations are off by, by the estimate.

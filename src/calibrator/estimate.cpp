@@ -36,9 +36,8 @@ std::vector<Correlation> strongest_correlations(const Estimate& estimate, Index 
 RowMatrixXd residuals(const Campaign& campaign, const Parameters& parameters,
                       const Measurements& measurements) {
     const Sensor& sensor = *campaign.sensor;
-    RowMatrixXd r =
-        RowMatrixXd::Constant(measurements.is_seen.count(), sensor.rows_per_target(),
-                              std::numeric_limits<double>::quiet_NaN());
+    RowMatrixXd r = RowMatrixXd::Constant(measurements.is_seen.count(), sensor.rows_per_target(),
+                                          std::numeric_limits<double>::quiet_NaN());
     VectorXd q(measurements.configurations.cols());
     VectorXd predicted(campaign.sensor->row_count());
     VectorXd deviation(campaign.sensor->row_count());
@@ -142,7 +141,8 @@ Metrics make_metrics(const RowMatrixXd& residuals, Index length_count) {
         metrics.coordinate_max[i] = along.cwiseAbs().maxCoeff();
     }
     if (metrics.has_orientation) {
-        const RowMatrixXd turns = rows_of_kind(residuals.rightCols(residuals.cols() - length_count));
+        const RowMatrixXd turns =
+            rows_of_kind(residuals.rightCols(residuals.cols() - length_count));
         if (turns.rows() == 0) return metrics;
         VectorXd angles = without_gaps(turns).rowwise().norm();
         std::sort(angles.begin(), angles.end());

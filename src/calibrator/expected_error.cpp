@@ -263,8 +263,7 @@ std::vector<ErrorPrediction> predict_errors(const Campaign& campaign, const Esti
         prediction.is_angle = is_angle;
         prediction.units = &sensor.units(is_angle);
         prediction.each.resize(static_cast<std::size_t>(configurations.rows()));
-        const std::size_t width =
-            points.size() / std::max<std::size_t>(1, prediction.each.size());
+        const std::size_t width = points.size() / std::max<std::size_t>(1, prediction.each.size());
         detail::for_each_range(configurations.rows(), at_once, [&](Index first, Index last) {
             stop.check("predicting errors");
             for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last);

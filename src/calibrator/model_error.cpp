@@ -179,8 +179,7 @@ class PredictiveScore {
             for (Index k = 0; k < count; ++k) {
                 const bool is_angle = is_angle_[static_cast<std::size_t>(first + k)];
                 if (is_angle && has_pixels_) continue;  // they have no error of their own
-                covariance_(k, k) +=
-                    has_[1] && is_angle ? squares[1] : (1 - common_) * squares[0];
+                covariance_(k, k) += has_[1] && is_angle ? squares[1] : (1 - common_) * squares[0];
             }
             if (common_ == 0) {
                 detail::whiten(covariance_, whitened_.middleRows(first, count), factor_,
@@ -450,7 +449,7 @@ Campaign find_model_error(const IdentificationProblem& problem, const Parameters
     found.model_error = within_reach(std::exp(averages[0]), expected.model_error);
     found.model_error_orientation =
         within_reach(std::exp(averages[1]), expected.model_error_orientation);
-    if (expected.sensor->has_only_pixels() && expected.model_error > 0) {
+    if (expected.sensor->has_pixels() && expected.model_error > 0) {
         found.model_error_orientation =
             expected.model_error_orientation * found.model_error / expected.model_error;
     }

@@ -6,6 +6,7 @@
 #include "linear_registration.hpp"
 #include "measurement/known_sensor.hpp"
 #include "model/sampling.hpp"
+#include "part_alone.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
@@ -167,41 +168,7 @@ Start solve_linear(const Campaign& campaign, const ObservedPoints& observed,
 }
 
 Start find_start(const Campaign& campaign, const Measurements& measurements);
-Registration polish(const Campaign& campaign, const Measurements& measurements,
-                    const Start& start);
-
-/// One of several instruments alone: the campaign in its own frame, and what it measured.
-struct PartAlone {
-    Campaign campaign;
-    Measurements measured;
-};
-
-PartAlone take_part(const Campaign& campaign, const CombinedSensor& combined, Index part,
-                    const Measurements& measurements) {
-    const SensorPart& stated = combined.part(part);
-    PartAlone alone{campaign, measurements};
-    alone.campaign.sensor = stated.sensor;
-    alone.campaign.prior.reset();
-    alone.campaign.nominal.sensor = combined.unknowns_of(part, campaign.nominal.sensor);
-    alone.campaign.has_nominal_targets = stated.has_nominal_unknowns;
-    const Isometry3d frame = combined.frame(part, campaign.nominal.sensor);
-    alone.campaign.nominal.world_from_base = frame.inverse() * campaign.nominal.world_from_base;
-    const bool is_same = stated.known_frame && frame.isApprox(Isometry3d::Identity(), 0);
-    if (!is_same) alone.campaign.base_is_known.fill(false);
-    Measurements& measured = alone.measured;
-    measured.observations =
-        RowMatrixXd(measurements.observations.middleCols(combined.first_row_of(part),
-                                                         stated.sensor->row_count()));
-    measured.is_seen = Seen(measurements.is_seen.middleCols(combined.first_target(part),
-                                                            stated.sensor->target_count()));
-    std::vector<Index> shown;
-    for (Index i = 0; i < measured.configuration_count(); ++i) {
-        const Index first = measured.first_sample[static_cast<std::size_t>(i)];
-        if (measured.is_seen.middleRows(first, measured.sample_count(i)).any()) shown.push_back(i);
-    }
-    measured = take(measured, shown);
-    return alone;
-}
+Registration polish(const Campaign& campaign, const Measurements& measurements, const Start& start);
 
 /// "sensor 2 (corners)".
 std::string name_of(const CombinedSensor& combined, Index part) {
@@ -223,7 +190,9 @@ Start find_start_of_parts(const Campaign& campaign, const CombinedSensor& combin
         const SensorPart& stated = combined.part(part);
         unknowns[k] = combined.unknowns_of(part, campaign.nominal.sensor);
         frames[k] = combined.frame(part, campaign.nominal.sensor);
-        const auto [alone, measured] = take_part(campaign, combined, part, measurements);
+        const detail::PartAlone only = detail::take_part(campaign, combined, part, measurements);
+        const Campaign& alone = only.campaign;
+        const Measurements& measured = only.measured;
         if (measured.configuration_count() == 0) {
             return {{campaign.nominal,
                      fmt::format("{} shows nothing in any configuration; measure by it, or leave "

@@ -92,8 +92,8 @@ Targets all_targets(const std::vector<SensorPart>& parts) {
 
 /// Puts `names` into those that are taken; false: some are already.
 bool take_names(const std::vector<std::string>& names, std::set<std::string>& taken) {
-    const bool are_new = std::ranges::none_of(
-        names, [&](const std::string& name) { return taken.contains(name); });
+    const bool are_new =
+        std::ranges::none_of(names, [&](const std::string& name) { return taken.contains(name); });
     if (are_new) taken.insert(names.begin(), names.end());
     return are_new;
 }
@@ -359,8 +359,7 @@ bool CombinedSensor::has_view() const {
 bool CombinedSensor::is_readable(Index target, const ConstNumbers& observation) const {
     const Part& part = of(part_of(target));
     return part.sensor().is_readable(
-        target - part.first_target,
-        observation.segment(part.first_row, part.sensor().row_count()));
+        target - part.first_target, observation.segment(part.first_row, part.sensor().row_count()));
 }
 
 void CombinedSensor::view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
@@ -383,8 +382,8 @@ void CombinedSensor::view_clearances(const Isometry3d& world_from_flange, const 
 Index CombinedSensor::least_in_view() const {
     Index least = 0;
     for (const Part& part : parts_) {
-        least += part.sensor().has_view() ? part.sensor().least_in_view()
-                                          : part.sensor().target_count();
+        least +=
+            part.sensor().has_view() ? part.sensor().least_in_view() : part.sensor().target_count();
     }
     return least;
 }

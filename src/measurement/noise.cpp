@@ -60,7 +60,7 @@ struct MotionShares {
     double turn = 0;  ///< rad for 1 m at the targets
 };
 MotionShares shares_of(const Campaign& campaign, const TargetGroup& group) {
-    if (campaign.sensor->has_only_pixels()) {
+    if (campaign.sensor->has_pixels()) {
         const double turn = campaign.model_error_orientation;
         return {1, campaign.model_error > 0 ? turn / campaign.model_error : 0};
     }

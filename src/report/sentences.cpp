@@ -45,7 +45,7 @@ std::string describe_model_error(const Campaign& campaign) {
     std::string text;
     if (sensor.has_lengths() || sensor.has_pixels())
         text = format_short(mm_per_m * campaign.model_error, 4) + " mm";
-    if (!sensor.has_angles() || (sensor.has_lengths() && sensor.has_pixels())) return text;
+    if (!sensor.has_angles()) return text;
     return text + (text.empty() ? "" : " and ") +
            format_short(mrad_per_rad * campaign.model_error_orientation, 4) + " mrad";
 }

@@ -66,8 +66,7 @@ Campaign without_model_error(const std::string& text) {
 }
 
 TEST(CombinedSensors, OfATrackerAndACameraStateDeviationsThatHold) {
-    const Found found =
-        calibrate_many(without_model_error(testing::tracker_and_camera), 30, 60);
+    const Found found = calibrate_many(without_model_error(testing::tracker_and_camera), 30, 60);
     expect_covered(found, 60);
 }
 
@@ -80,13 +79,12 @@ TEST(CombinedSensors, OfACameraAndPlanesStateDeviationsThatHold) {
 /// by the tracker alone at the same poses, and some clearly better.
 TEST(CombinedSensors, TellNoLessThanOneOfThem) {
     const Campaign both = without_model_error(testing::tracker_and_camera);
-    const Campaign alone =
-        with_robot(without_model_error(testing::tracker_alone), both.robot);
+    const Campaign alone = with_robot(without_model_error(testing::tracker_alone), both.robot);
     const Measurements measured = simulate(both, {30, 1, 1, 2}).measurements;
     const auto sigmas = [&](const Campaign& campaign) {
         RowMatrixXd times = times_seen(measured).leftCols(campaign.sensor->target_count());
-        const MatrixXd M = information(
-            make_blocks(campaign, campaign.nominal, measured.configurations, times));
+        const MatrixXd M =
+            information(make_blocks(campaign, campaign.nominal, measured.configurations, times));
         const MatrixXd C = M.llt().solve(MatrixXd::Identity(M.rows(), M.cols()));
         return VectorXd(C.diagonal().cwiseSqrt());
     };

@@ -37,7 +37,7 @@ class CombinedSensors : public Program {
 
 TEST_F(CombinedSensors, HaveTheirColumnsSideBySide) {
     const std::string header = lines_of("m.csv").front();
-    EXPECT_NE(header.find(",p2_z_mm,s2_p1_u_px,s2_p1_v_px,"), std::string::npos) << header;
+    EXPECT_NE(header.find(",p2_z_mm,p1_u_px,p1_v_px,"), std::string::npos) << header;
     EXPECT_EQ(lines_of("m.csv").size(), 1U + 40 * 2);
 }
 
@@ -64,7 +64,7 @@ TEST_F(CombinedSensors, AreTakenByEveryCommand) {
     run_well("simulate c.yaml --poses 20 --seed 5 -o next.csv");
     run_well("calibrate c.yaml -m next.csv --from e.json --folds 3");
     run_well("calibrate c.yaml -m m.csv --validate next.csv --folds 0");
-    run_well("plan c.yaml -k 20 --pool 60 --workspace-poses 30 --starts 1 -o p.json");
+    run_well("plan c.yaml -k 20 --pool 150 --workspace-poses 30 --starts 1 -o p.json");
     EXPECT_EQ(run("verify p.json").code, 0);
     run_well("plan c.yaml -k 6 --pool 40 --workspace-poses 30 --starts 1 --from e.json -o q.json");
     run_well("select c.yaml -m m.csv -k 24 --starts 2 --proof 0.2 -o s.json");
@@ -100,7 +100,7 @@ TEST_F(CombinedSensors, AreRefusedWhereTheyCannotBeUsed) {
         expect_input_error("calibrate bad.yaml -m m.csv -o e.json", words);
     };
     refuse(with(tracker_and_camera, "kind: camera", "kind: camara"),
-           "sensors[1].kind: is 'camara'; did you mean");
+           "sensors[2].kind is 'camara'; did you mean");
     refuse(tracker_alone.substr(0, tracker_alone.find("sensor:")) + "sensors:\n" + tracker_part,
            "lists 1 sensor; must be from 2 to 8");
     refuse(tracker_and_camera + "sensor: {kind: points, sigma_mm: 1, targets: {count: 1}}\n",

@@ -38,7 +38,7 @@ inline const std::string tracker_and_camera = "name: tracker and camera\n" + com
     intrinsics: {fx_px: 2400, fy_px: 2400, cx_px: 1224, cy_px: 1024, known: false,
                  distortion: {model: brown_conrady, coefficients: [-0.1, 0, 0, 0, 0]}}
     board: {columns: 6, rows: 4, square_mm: 30}
-    place: {position_mm: [20, 30, 60], rpy_deg: [180, 0, 0]}
+    place: {position_mm: [20, 30, 60], rpy_deg: [165, 0, 10]}
     frame: {position_mm: [1151, 1063, 200], rpy_deg: [-107, 0, -116]}
 )";
 
@@ -50,8 +50,9 @@ inline const std::string tracker_alone = R"(name: tracker alone
 )";
 
 /// A camera on the flange before a board, a tip that touches faces whose places are found.
-inline const std::string camera_and_planes = "name: camera and planes\n" + combined_arm +
-                                             R"(base: {position_mm: [87, 550, 0], rpy_deg: [180, 0, 90]}
+inline const std::string camera_and_planes =
+    "name: camera and planes\n" + combined_arm +
+    R"(base: {position_mm: [87, 550, 0], rpy_deg: [180, 0, 90]}
 sensors:
   - kind: camera
     camera: flange

@@ -144,20 +144,20 @@ inline std::vector<SensorCampaign> combined_campaigns(const Chain& robot) {
     const Campaign camera = before_camera(points, fixed_camera());
     Isometry3d tool(Eigen::AngleAxisd(2.5, Vector3d(1, -2, 0.5).normalized()));
     tool.translation() = Vector3d(0.1, -0.05, 0.2);
-    Campaign poses = with_sensor(
-        points, std::make_shared<PoseSensor>(std::nullopt, IsotropicNoise{5e-5}, 1e-4),
-        tool_unknowns(tool));
+    Campaign poses =
+        with_sensor(points, std::make_shared<PoseSensor>(std::nullopt, IsotropicNoise{5e-5}, 1e-4),
+                    tool_unknowns(tool));
     poses.nominal.world_from_base = second_tracker(points).nominal.world_from_base;
     return {{"two trackers", combined_campaign(points, {second_tracker(points)})},
             {"tracker and camera", combined_campaign(points, {camera})},
             {"tracker and planes", combined_campaign(points, {touched_planes(points)})},
             {"camera and planes, frame known",
-             combined_campaign(before_camera(points, camera_on_flange()),
-                               {touched_planes(points)}, true)},
+             combined_campaign(before_camera(points, camera_on_flange()), {touched_planes(points)},
+                               true)},
             {"poses and points", combined_campaign(poses, {points})},
             {"tracker, camera roughly known and planes",
-             combined_campaign(points, {before_camera(points, camera_before_cube()),
-                                        touched_planes(points)})}};
+             combined_campaign(
+                 points, {before_camera(points, camera_before_cube()), touched_planes(points)})}};
 }
 
 inline std::vector<SensorCampaign> campaigns_of_every_sensor(const Chain& robot) {

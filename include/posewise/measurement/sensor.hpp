@@ -267,9 +267,7 @@ class Sensor {
     }
     /// How many positions count where accuracy is predicted: one a target, but of pixels and of
     /// several instruments one for each of targets(), since all corners belong to one body.
-    Index position_count() const {
-        return counts_points() ? targets().count() : target_count();
-    }
+    Index position_count() const { return counts_points() ? targets().count() : target_count(); }
     /// One of these in the flange frame, m.
     Vector3d counted_position(Index position, const VectorXd& unknowns) const {
         return targets().position(counts_points() ? position : point_of(position), unknowns);

@@ -128,9 +128,9 @@ struct WithoutOutliers {
 
 /// What one of several instruments is missed by, in its own unit.
 struct SensorAccuracy {
-    std::string readings;                            ///< "points", "corners"
-    const AmountUnits* units = &length_units;        ///< of Metrics::rms()
-    Metrics nominal, fit;                            ///< all samples
+    std::string readings;                      ///< "points", "corners"
+    const AmountUnits* units = &length_units;  ///< of Metrics::rms()
+    Metrics nominal, fit;                      ///< all samples
     std::optional<Metrics> held_out{};
 };
 

@@ -350,8 +350,9 @@ Cell read_cell(const YamlValue& value, const Chain& robot, const Sensor& sensor)
     if (tracker || reflectors) cell.sight = Sight{};
     if (cell.sight && sensor.is_combined()) {
         throw(tracker ? tracker : reflectors)
-            ->error("states what one instrument can see, but there are several sensors; must be "
-                    "left out");
+            ->error(
+                "states what one instrument can see, but there are several sensors; must be "
+                "left out");
     }
     if (cell.sight && sensor.has_contacts()) {
         throw(tracker ? tracker : reflectors)

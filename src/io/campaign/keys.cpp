@@ -348,8 +348,8 @@ const YamlKeys places{
          "of points and distances: the ball's, a body that keeps off the cell's obstacles; 0: a "
          "flat mark",
          "19.05", "`6.35`"},
-        {"rpy_deg", "tool, place, frame and base", "roll, pitch and yaw about the fixed axes x, y and z",
-         "required", "`[0, 0, 180]`"},
+        {"rpy_deg", "tool, place, frame and base",
+         "roll, pitch and yaw about the fixed axes x, y and z", "required", "`[0, 0, 180]`"},
         {"known", "targets, tool, place, frame, anchors and base",
          "fixed as stated: `true`, or the axes that are (targets: x, y, z; base: x, y, z, rx, ry, "
          "rz)",

@@ -434,8 +434,9 @@ FrameSection read_sensor_frame(const YamlValue& sensor, bool is_first) {
     if (!value) return {};
     if (value->is_text("first")) return {same, same, true};
     if (!value->is_map()) {
-        throw value->error("must be first (the same as the first sensor's) or a map with "
-                           "position_mm and rpy_deg");
+        throw value->error(
+            "must be first (the same as the first sensor's) or a map with "
+            "position_mm and rpy_deg");
     }
     const YamlMap map(*value, keys::places, "frame");
     const Isometry3d frame = read_frame(map);
@@ -448,8 +449,9 @@ FrameSection read_sensor_frame(const YamlValue& sensor, bool is_first) {
 SensorSection read_sensor(const YamlValue& value) {
     for (const YamlEntry& entry : value.entries()) {
         if (entry.key != "frame") continue;
-        throw entry.value.error("is of a further one of several sensors (key 'sensors'); must be "
-                                "left out");
+        throw entry.value.error(
+            "is of a further one of several sensors (key 'sensors'); must be "
+            "left out");
     }
     return read_kind(value);
 }
@@ -458,9 +460,10 @@ SensorSection read_sensors(const YamlValue& list) {
     const std::vector<YamlValue> values = list.list();
     constexpr std::size_t most = 8;
     if (values.size() < 2 || values.size() > most) {
-        throw list.error(fmt::format("lists {} sensor{}; must be from 2 to {} (one alone is stated "
-                                     "as 'sensor')",
-                                     values.size(), values.size() == 1 ? "" : "s", most));
+        throw list.error(
+            fmt::format("lists {} sensor{}; must be from 2 to {} (one alone is stated "
+                        "as 'sensor')",
+                        values.size(), values.size() == 1 ? "" : "s", most));
     }
     std::vector<SensorPart> parts;
     std::vector<VectorXd> unknowns;

@@ -111,7 +111,8 @@ bool is_far_above_prior(const Doubted& doubted) {
     const auto parameters = static_cast<Index>(doubted.estimate.names.size());
     Index numbers = 0;
     for (Index j = 0; j < doubted.measurements.is_seen.cols(); ++j) {
-        numbers += doubted.campaign.sensor->rows_of(j) * doubted.measurements.is_seen.col(j).count();
+        numbers +=
+            doubted.campaign.sensor->rows_of(j) * doubted.measurements.is_seen.col(j).count();
     }
     return numbers > many * parameters;
 }

@@ -79,9 +79,8 @@ std::vector<ReadingResidual> list(const Campaign& campaign, const Estimate& esti
             const VectorXd held_out = own_numbers(sensor, one.target, rows.held_out.row(row));
             if (held_out.allFinite()) one.held_out = held_out;
         }
-        one.standardised =
-            one.calibrated.cwiseQuotient(deviations.segment(
-                sensor.first_row(one.target), sensor.rows_of(one.target)));
+        one.standardised = one.calibrated.cwiseQuotient(
+            deviations.segment(sensor.first_row(one.target), sensor.rows_of(one.target)));
         if (instrument && is_seen_from_world(sensor, one.target)) {
             one.direction =
                 direction_of(motion.world_from_flange *

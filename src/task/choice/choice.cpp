@@ -84,8 +84,7 @@ std::optional<double> value_rms(const Campaign& campaign, const ChoiceProblem& p
     if (problem.reading_deviation) {
         const Sensor& sensor = *campaign.sensor;
         const bool are_positions = !sensor.has_angles() && sensor.lengths_per_target() == 3 &&
-                                   !sensor.is_combined() &&
-                                   (problem.share.array() == 1).all();
+                                   !sensor.is_combined() && (problem.share.array() == 1).all();
         if (!are_positions || !needs_test_poses(problem.request.criterion)) return std::nullopt;
         return *problem.reading_deviation /
                std::sqrt(value * static_cast<double>(sensor.target_count()));

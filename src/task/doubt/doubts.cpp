@@ -9,6 +9,7 @@
 #include "absurd_values.hpp"
 #include "calibrator/missing_errors.hpp"
 #include "calibrator/model_error.hpp"
+#include "calibrator/part_alone.hpp"
 #include "core/format.hpp"
 #include "gross_errors.hpp"
 #include "model/joint_limits.hpp"
@@ -230,20 +231,33 @@ Doubts find_doubts(const Campaign& campaign, const Measurements& measurements,
             return doubts;
         }
     }
-    doubts.views = find_view_doubts(campaign, measurements, registered);
+    const auto parts = detail::parts_alone(campaign, measurements, registered);
+    for (const detail::PartAlone& part : parts) {
+        for (ViewDoubt& view : find_view_doubts(part.campaign, part.measured, part.registered)) {
+            doubts.views.push_back(std::move(view));
+        }
+    }
     std::vector<std::string> views;
     for (const ViewDoubt& view : doubts.views) {
         if (std::ranges::find(views, view.sample) == views.end()) views.push_back(view.sample);
     }
     const Measurements measured = leave_out(measurements, views);
-    doubts.camera = find_camera_doubt(campaign, measured, registered);
+    for (const detail::PartAlone& part : detail::parts_alone(campaign, measured, registered)) {
+        if (!doubts.camera) {
+            doubts.camera = find_camera_doubt(part.campaign, part.measured, part.registered);
+        }
+    }
     if (doubts.camera && doubts.camera->board_factor != 1) {
         doubts.misfit.reset();
     } else if (!campaign.sensor->has_only_pixels()) {
         doubts.misfit = find_misfit(campaign, measured, registered);
     }
     if (!doubts.misfit) {
-        doubts.planes = find_plane_doubts(campaign, measured);
+        for (const detail::PartAlone& part : parts) {
+            if (doubts.planes.empty()) {
+                doubts.planes = find_plane_doubts(part.campaign, part.measured);
+            }
+        }
         doubts.places = find_place_doubts(campaign, registered);
     }
     if (nominal.distance_rms > detail::gross_distance) doubts.gross_error = nominal.distance_rms;

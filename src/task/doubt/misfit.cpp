@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "calibrator/part_alone.hpp"
 #include "camera_misfit.hpp"
 #include "core/format.hpp"
 #include "core/statistics.hpp"
@@ -44,6 +45,18 @@ bool are_orientations_off(const Campaign& campaign, const RowMatrixXd& residuals
     return metrics.orientation_rms > detail::gross_angle;
 }
 
+/// Of the instrument that tells most by itself, if it is in the unit of all.
+std::optional<Misfit> find_misfit_of_part(const Campaign& campaign, const Measurements& measured,
+                                          const Parameters& registered) {
+    Campaign found = campaign;
+    found.nominal = registered;
+    const auto alone = detail::telling_part(campaign, measured);
+    const bool is_alike = &alone.campaign.sensor->main_units() == &campaign.sensor->main_units();
+    if (alone.campaign.sensor->is_combined() || !is_alike) return std::nullopt;
+    return find_misfit(alone.campaign, alone.measured,
+                       detail::telling_part(found, measured).campaign.nominal);
+}
+
 }  // namespace
 
 double detail::median_distance(const RowMatrixXd& residuals) {
@@ -59,6 +72,7 @@ double detail::median_distance(const RowMatrixXd& residuals) {
 
 std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& measured,
                                   const Parameters& registered) {
+    if (campaign.sensor->is_combined()) return find_misfit_of_part(campaign, measured, registered);
     const bool has_pixels = campaign.sensor->has_only_pixels();
     if (!campaign.sensor->has_lengths() && !has_pixels) return std::nullopt;  // it is not known
     Misfit misfit;

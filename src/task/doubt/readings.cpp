@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "calibrator/part_alone.hpp"
 #include "core/format.hpp"
 #include "core/text.hpp"
 #include "posewise/core/types.hpp"
@@ -43,7 +44,11 @@ double credible_distance(const Campaign& campaign, const Measurements& measureme
 
 }  // namespace
 
-ReadingSearch search_readings(const Campaign& campaign, const Measurements& measurements) {
+ReadingSearch search_readings(const Campaign& stated, const Measurements& all) {
+    // Of several instruments one tells how joints are read, and many take long.
+    const detail::PartAlone telling = detail::telling_part(stated, all);
+    const Campaign& campaign = telling.campaign;
+    const Measurements& measurements = telling.measured;
     ReadingSearch search;
     detail::FittedReadings fitted = detail::fit_readings(campaign, measurements);
     search.undetermined = std::move(fitted.undetermined);

@@ -13,8 +13,7 @@ RowMatrixXd whitened_deviation(const Campaign& instrument, const Parameters& par
                                const Measurements& measured, Index sample, const VectorXd& q,
                                const VectorXd& mean) {
     const Sensor& sensor = *instrument.sensor;
-    const std::vector<Index> rows =
-        seen_rows(sensor, measured.is_seen.row(sample));
+    const std::vector<Index> rows = seen_rows(sensor, measured.is_seen.row(sample));
     VectorXd observed = mean;
     observed(rows) = measured.observations.row(sample).transpose()(rows);
     FlangeMotion motion;
@@ -43,8 +42,8 @@ std::optional<ScatterDoubt> find_scatter_doubt(const Campaign& campaign,
     ScatterDoubt doubt;
     for (Index i = 0; i < measured.configuration_count(); ++i) {
         for (Index j = 0; j < times.cols(); ++j) {
-            freedom += static_cast<double>(campaign.sensor->rows_of(j)) *
-                       std::max(0.0, times(i, j) - 1);
+            freedom +=
+                static_cast<double>(campaign.sensor->rows_of(j)) * std::max(0.0, times(i, j) - 1);
         }
         if (measured.sample_count(i) < 2) continue;
         const VectorXd q = measured.configurations.row(i).transpose();

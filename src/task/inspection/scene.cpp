@@ -182,9 +182,8 @@ std::vector<std::string> reading_names(const Campaign& campaign) {
     const std::vector<std::string> numbers = sensor.observation_names();
     std::vector<std::string> names;
     for (Index k = 0; k < sensor.target_count(); ++k) {
-        names.push_back(are_targets
-                            ? "target" + std::to_string(k + 1)
-                            : numbers[static_cast<std::size_t>(sensor.first_row(k))]);
+        names.push_back(are_targets ? "target" + std::to_string(k + 1)
+                                    : numbers[static_cast<std::size_t>(sensor.first_row(k))]);
     }
     return names;
 }

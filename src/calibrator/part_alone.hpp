@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "posewise/measurement/measurements.hpp"
+#include "posewise/measurement/sensors.hpp"
+
+namespace posewise::detail {
+
+/// One of several instruments alone: the campaign in its own frame, and what it measured.
+struct PartAlone {
+    Campaign campaign;
+    Measurements measured;    ///< configurations that show any of its targets
+    Parameters registered{};  ///< of parts_alone()
+};
+
+PartAlone take_part(const Campaign& campaign, const CombinedSensor& combined, Index part,
+                    const Measurements& measurements);
+
+/// The same of a part that registers without a guess, points or poses rather than a camera; the
+/// campaign as it is where it has one instrument, or none of several does.
+PartAlone telling_part(const Campaign& campaign, const Measurements& measurements);
+
+/// Every instrument that shows anything; the campaign as it is where it has one.
+std::vector<PartAlone> parts_alone(const Campaign& campaign, const Measurements& measurements,
+                                   const Parameters& registered);
+
+}  // namespace posewise::detail
