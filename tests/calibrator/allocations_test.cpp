@@ -77,6 +77,7 @@ TEST(EverySensor, TakesNoMemoryForEachConfiguration) {
     ASSERT_GT(asked, 0) << "nothing is counted";
     for (auto& [name, campaign] : campaigns) {
         if (campaign.sensor->has_contacts()) continue;
+        if (campaign.sensor->is_combined()) continue;  // its parts' derivatives are taken apart
         campaign.base_is_known.fill(false);  // what is known of it is left out with a copy
         SCOPED_TRACE(name);
         if (const auto* camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get())) {
