@@ -59,6 +59,11 @@ std::string missing_places(const Campaign& campaign) {
         return "where the ball and all sockets are (position_mm of 'sensor.targets' and of each of "
                "'sensor.sockets')";
     }
+    if (sensor.is_combined()) {
+        return "where the base is (key 'base') and of each of 'sensors' where on the flange it "
+               "sees what, and its frame (keys 'targets.position_mm', 'tool' or 'place', and "
+               "'frame')";
+    }
     if (sensor.has_pixels()) {
         const std::string places =
             "where board and cameras are, and their intrinsics, if only roughly (keys "

@@ -60,7 +60,7 @@ TEST_F(CombinedSensors, AreCalibratedTogetherAndJudgedEachInItsUnit) {
 TEST_F(CombinedSensors, AreTakenByEveryCommand) {
     EXPECT_NE(run_well("inspect c.yaml -m m.csv").find("2) 24 corners of a board"),
               std::string::npos);
-    run_well("calibrate c.yaml -m m.csv --folds 0 -o e.json --page e.html");
+    run_well("calibrate c.yaml -m m.csv --folds 0 -o e.json --report e.html");
     run_well("simulate c.yaml --poses 20 --seed 5 -o next.csv");
     run_well("calibrate c.yaml -m next.csv --from e.json --folds 3");
     run_well("calibrate c.yaml -m m.csv --validate next.csv --folds 0");
