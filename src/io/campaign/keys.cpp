@@ -187,8 +187,8 @@ const YamlKeys sensor{
     {
         {"kind", "", "`points`, `poses`, `camera`, `distances`, `planes` or `sockets`", "required",
          "`points`"},
-        {"frame", "",
-         "of a further one of `sensors`: where its own frame is in that of the first (of a camera "
+        {"frame", "points, poses, camera, distances and planes",
+         "beside a first one (`sensors`): where its own frame is in that of the first (of a camera "
          "on the flange the board is its frame); `first`: it is the same",
          "unknown: found, but must be stated to plan and to simulate",
          "`{position_mm: [3000, 0, 0], rpy_deg: [0, 0, 90]}`"},
