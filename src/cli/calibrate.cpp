@@ -171,7 +171,8 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
     const InputPaths& paths = arguments.paths;
     const EarlierArguments& earlier = arguments.earlier;
     const io::CampaignFile file = read_calibrated(arguments);
-    const std::optional<Plan> plan = read_measured_plan(paths, file);
+    const MeasuredPlans plans = read_measured_plans(paths, file);
+    const std::optional<Plan>& plan = plans.all;
     const Validation validation = read_validation(
         arguments, file, paths.parts.empty() ? points_of(paths, plan) : io::PointsSource{});
     std::vector<std::string> inputs = files_of(paths);
@@ -182,7 +183,7 @@ void calibrate(const CalibrateArguments& arguments, const CLI::App& command,
         common);
     CalibrationOptions options = make_options(arguments, file.seed);
     const io::MeasurementsFile measured =
-        read_measured_without(options.excluded, paths, file, earlier, plan);
+        read_measured_without(options.excluded, paths, file, earlier, plans);
     check_needs_unit(paths, measured.is_joined || validation.is_joined);
     options.conditions = measured.conditions;
     io::Provenance made_from = provenance_of(command, file, paths.measurements, measured);

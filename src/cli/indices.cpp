@@ -49,12 +49,12 @@ struct IndicesArguments {
 
 Measurements read_input(const IndicesArguments& arguments, const io::CampaignFile& file) {
     const auto& excluded = arguments.excluded;
-    const std::optional<Plan> plan = read_measured_plan(arguments.paths, file);
+    const MeasuredPlans plans = read_measured_plans(arguments.paths, file);
     const auto all =
-        read_measured_without(excluded, arguments.paths, file, arguments.earlier, plan);
+        read_measured_without(excluded, arguments.paths, file, arguments.earlier, plans);
     check_needs_unit(arguments.paths, all.is_joined);
-    if (!plan) return all;
-    return take(all, find_planned(arguments.paths.plan, *plan, file, all, excluded));
+    if (!plans.all) return all;
+    return take(all, find_planned(arguments.paths.plan, *plans.all, file, all, excluded));
 }
 
 /// The parameters' names in the file, else their columns.

@@ -142,7 +142,7 @@ void inspect(const InspectArguments& arguments, const CommonOptions& common) {
     ReadingSearch readings;
     const InputPaths& paths = arguments.paths;
     if (!paths.measurements.empty()) {
-        const std::optional<Plan> plan = read_measured_plan(paths, file);
+        const std::optional<Plan> plan = read_measured_plans(paths, file).all;
         const auto measurements = read_as_stated(paths.measurements, file, points_of(paths, plan));
         check_needs_unit(paths, measurements.is_joined);
         check_needs_plan(paths, measurements.is_joined);

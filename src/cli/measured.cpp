@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <iterator>
 
 #include "common.hpp"
 #include "core/text.hpp"
@@ -39,13 +37,17 @@ void check_is_new(const std::vector<std::string>& paths, std::size_t place, cons
     throw input_error_at({*here}, fmt::format("is stated twice; must be stated once: {}", reason));
 }
 
-/// "old/p1" for p1 of old.json; with folders where several plans are called so.
-std::string id_among(const InputPaths& all, const InputPaths& part, const std::string& id) {
-    const auto stem = [](const InputPaths& one) {
-        return std::filesystem::path(one.plan).stem().string();
-    };
-    const bool is_clear = std::ranges::count(all.parts, stem(part), stem) == 1;
-    return (is_clear ? stem(part) : part.plan) + '/' + id;
+std::vector<std::string> plan_paths(const InputPaths& paths) {
+    std::vector<std::string> plans;
+    for (const InputPaths& part : paths.parts) plans.push_back(part.plan);
+    return plans;
+}
+
+/// Says what the reader passed over.
+void warn_of_passed_over(const std::string& path, const io::MeasurementsFile& measured) {
+    for (const std::string& sentence : io::describe_passed_over(measured)) {
+        print_warning(path + ": " + sentence);
+    }
 }
 
 }  // namespace
@@ -111,51 +113,25 @@ std::vector<std::string> files_of(const InputPaths& paths) {
     return files;
 }
 
-std::optional<Plan> read_measured_plan(const InputPaths& paths, const io::CampaignFile& file) {
-    if (paths.plan.empty()) return std::nullopt;
-    if (paths.parts.empty()) return io::read_plan(paths.plan, file);
-    Plan all;
-    for (const InputPaths& part : paths.parts) {
-        Plan plan = io::read_plan(part.plan, file);
-        const std::string mismatch = describe_mismatch(plan, file);
-        if (!mismatch.empty()) throw input_error_at({part.plan}, mismatch);
-        for (auto* const poses : {&plan.poses, &plan.verification}) {
-            for (PlannedPose& pose : *poses) pose.id = id_among(paths, part, pose.id);
-        }
-        if (all.poses.empty()) {
-            all = std::move(plan);
-            continue;
-        }
-        all.request.pose_count += plan.request.pose_count;
-        std::ranges::move(plan.poses, std::back_inserter(all.poses));
-        std::ranges::move(plan.verification, std::back_inserter(all.verification));
-    }
-    return all;
+MeasuredPlans read_measured_plans(const InputPaths& paths, const io::CampaignFile& file) {
+    if (paths.plan.empty()) return {};
+    if (paths.parts.empty()) return {io::read_plan(paths.plan, file), {}};
+    std::vector<Plan> parts;
+    for (const InputPaths& part : paths.parts) parts.push_back(io::read_plan(part.plan, file));
+    return {io::join_plans(parts, plan_paths(paths), file), parts};
 }
 
 io::MeasurementsFile read_of_plans(const InputPaths& paths, const io::CampaignFile& file,
-                                   const std::optional<Plan>& plan, MeasurementsReader& read) {
-    if (paths.parts.empty()) return read(paths.measurements, file, points_of(paths, plan));
-    io::MeasurementsFile all;
-    std::vector<Measurements> parts;
-    for (const InputPaths& part : paths.parts) {
-        const Plan own = io::read_plan(part.plan, file);
-        io::MeasurementsFile one = read(part.measurements, file, points_of(part, own));
-        for (std::string& id : one.ids) id = id_among(paths, part, id);
-        for (std::size_t k = 0; k < parts.size(); ++k) {
-            if (parts[k].observations.rows() != one.observations.rows() ||
-                parts[k].observations != one.observations) {
-                continue;
-            }
-            throw input_error_at({part.measurements},
-                                 fmt::format("has the same readings as {}; must be others",
-                                             paths.parts[k].measurements));
-        }
-        all.is_joined |= one.is_joined;
-        parts.push_back(std::move(one));
+                                   const MeasuredPlans& plans, MeasurementsReader& read) {
+    if (paths.parts.empty()) return read(paths.measurements, file, points_of(paths, plans.all));
+    std::vector<io::MeasurementsFile> measured;
+    std::vector<std::string> files;
+    for (std::size_t k = 0; k < paths.parts.size(); ++k) {
+        const InputPaths& part = paths.parts[k];
+        measured.push_back(read(part.measurements, file, points_of(part, plans.parts[k])));
+        files.push_back(part.measurements);
     }
-    static_cast<Measurements&>(all) = put_together(parts);
-    return all;
+    return io::join_measurements(std::move(measured), files, plan_paths(paths));
 }
 
 io::PointsSource points_of(const InputPaths& paths, const std::optional<Plan>& plan) {
@@ -177,9 +153,7 @@ void check_needs_plan(const InputPaths& paths, bool is_joined, const std::string
 io::MeasurementsFile read_as_stated(const std::string& path, const io::CampaignFile& file,
                                     const io::PointsSource& points) {
     io::MeasurementsFile measured = io::read_measurements(path, file, points);
-    for (const std::string& sentence : io::describe_passed_over(measured)) {
-        print_warning(path + ": " + sentence);
-    }
+    warn_of_passed_over(path, measured);
     return measured;
 }
 
@@ -193,9 +167,10 @@ io::MeasurementsFile read_measured(const std::string& path, const io::CampaignFi
 io::MeasurementsFile read_measured_without(const std::vector<std::string>& excluded,
                                            const InputPaths& paths, const io::CampaignFile& file,
                                            const EarlierArguments& earlier,
-                                           const std::optional<Plan>& plan) {
+                                           const MeasuredPlans& plans) {
     const std::string& path = paths.measurements;
-    io::MeasurementsFile measured = read_of_plans(paths, file, plan, read_as_stated);
+    io::MeasurementsFile measured = read_of_plans(paths, file, plans, read_as_stated);
+    if (!paths.parts.empty()) warn_of_passed_over(path, measured);
     warn_of_counting_twice(earlier.from, earlier.is_prior, path, measured);
     static_cast<Measurements&>(measured) =
         compute_from(path, [&] { return leave_out(measured, excluded); });

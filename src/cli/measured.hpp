@@ -8,6 +8,7 @@
 #include "common.hpp"
 #include "estimates.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/task/plan.hpp"
 
 namespace posewise::cli {
 
@@ -33,18 +34,21 @@ InputPaths pair_with_plans(InputPaths paths, const std::vector<std::string>& mea
 /// All files that the paths name.
 std::vector<std::string> files_of(const InputPaths& paths);
 
-/// The plan that the paths name, if they do: as plan writes it, JSON or CSV. Several become one,
-/// whose ids have their plan's name before them: old/p1.
-std::optional<Plan> read_measured_plan(const InputPaths& paths, const io::CampaignFile& file);
+/// Plans whose poses were measured.
+struct MeasuredPlans {
+    std::optional<Plan> all;    ///< as one, see io::join_plans(); nothing: none is stated
+    std::vector<Plan> parts{};  ///< each by itself, where there are several
+};
+/// Those that the paths name: as plan writes them, JSON or CSV.
+MeasuredPlans read_measured_plans(const InputPaths& paths, const io::CampaignFile& file);
 io::PointsSource points_of(const InputPaths& paths, const std::optional<Plan>& plan);
 
-/// What `read` finds in the files of the paths, with the ids of read_measured_plan(), which `plan`
-/// is.
+/// What `read` finds in the files of the paths, see io::join_measurements().
 using MeasurementsReader = io::MeasurementsFile(const std::string& path,
                                                 const io::CampaignFile& file,
                                                 const io::PointsSource& points);
 io::MeasurementsFile read_of_plans(const InputPaths& paths, const io::CampaignFile& file,
-                                   const std::optional<Plan>& plan, MeasurementsReader& read);
+                                   const MeasuredPlans& plans, MeasurementsReader& read);
 
 /// io::read_measurements(). Warns of columns that are not used, of points that are missing, and of
 /// configurations beyond the joint limits, which are taken, since they were measured.
@@ -60,7 +64,7 @@ io::MeasurementsFile read_as_stated(const std::string& path, const io::CampaignF
 io::MeasurementsFile read_measured_without(const std::vector<std::string>& excluded,
                                            const InputPaths& paths, const io::CampaignFile& file,
                                            const EarlierArguments& earlier,
-                                           const std::optional<Plan>& plan = {});
+                                           const MeasuredPlans& plans = {});
 
 /// Throws InputError for options of points where none of what was read is a list of them, which is
 /// joined, but has joint values and units of its own: --points-unit and, where it is for nothing

@@ -38,7 +38,7 @@ std::optional<io::MeasurementsFile> read_held(const PlanRequest& request,
     const PlanSources& sources = request.sources;
     if (sources.augment.empty()) return std::nullopt;
     const InputPaths paths = paths_of(sources.augment, sources);
-    const std::optional<Plan> plan = read_measured_plan(paths, campaign);
+    const std::optional<Plan> plan = read_measured_plans(paths, campaign).all;
     io::MeasurementsFile held = read_measured(sources.augment, campaign, points_of(paths, plan));
     warn_of_counting_twice(sources.estimate, request.earlier.is_prior, sources.augment, held);
     if (plan && held.is_joined) warn_of_verification(sources.augment, *plan, held.ids);
@@ -51,7 +51,7 @@ Candidates read_candidates(const PlanSources& sources, CandidateKind kind,
     if (kind == CandidateKind::Measurements) {
         const InputPaths paths = paths_of(sources.candidates, sources);
         const io::MeasurementsFile read =
-            read_measured_without({}, paths, campaign, {}, read_measured_plan(paths, campaign));
+            read_measured_without({}, paths, campaign, {}, read_measured_plans(paths, campaign));
         is_joined = read.is_joined;
         return measured_candidates(read);
     }

@@ -142,14 +142,14 @@ InputPaths find_files(const io::EstimateRecord& record, const std::string& estim
 /// The measurements that it was made with, if they are still the same. Throws InputError otherwise.
 Measurements read_calibrated_with(const io::EstimateRecord& record, const InputPaths& paths,
                                   const io::CampaignFile& file) {
-    const std::optional<Plan> plan = read_measured_plan(paths, file);
-    io::MeasurementsFile all = read_of_plans(paths, file, plan, io::read_measurements);
+    const MeasuredPlans plans = read_measured_plans(paths, file);
+    io::MeasurementsFile all = read_of_plans(paths, file, plans, io::read_measurements);
     if (!io::are_of_checksum(record.made_from.measurements_checksum, all, record.excluded)) {
         throw input_error_at({paths.measurements}, "is not what it was made from any more");
     }
     static_cast<Measurements&>(all) = leave_out(all, record.excluded);
-    if (!plan) return all;
-    return take(all, find_planned(paths.plan, *plan, file, all, record.excluded));
+    if (!plans.all) return all;
+    return take(all, find_planned(paths.plan, *plans.all, file, all, record.excluded));
 }
 
 ShownFile show_estimate_file(const std::string& path) {

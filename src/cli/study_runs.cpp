@@ -139,9 +139,9 @@ std::vector<Study> study_measured(const StudyArguments& arguments, const CommonO
     const io::CampaignFile& file = files.front();
     check_study_outputs(arguments, {&file},
                         {paths.measurements, paths.plan, arguments.earlier.from}, common);
-    const std::optional<Plan> plan = read_measured_plan(paths, file);
+    const MeasuredPlans plans = read_measured_plans(paths, file);
     const auto measurements =
-        read_measured_without(arguments.excluded, paths, file, arguments.earlier, plan);
+        read_measured_without(arguments.excluded, paths, file, arguments.earlier, plans);
     check_needs_unit(paths, measurements.is_joined);
     check_needs_plan(paths, measurements.is_joined);
     StudyOptions options = arguments.options;

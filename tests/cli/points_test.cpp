@@ -414,6 +414,60 @@ TEST_F(Points, TimesAndTemperaturesAreLookedForInTheResiduals) {
               std::string::npos);
 }
 
+/// The first and the others of the poses, each with times of its own, and the same in one table.
+TEST_F(Points, TimesOfSeveralPlansAreLookedForWhereTheyAreOfOneClock) {
+    const auto write_parts = [&](const std::string& first_time, const std::string& second_time) {
+        std::string parts[3], plans[2];
+        std::istringstream lines(text_of("m.csv"));
+        int row = 0;
+        for (std::string line; std::getline(lines, line);) {
+            if (line[0] == '#') continue;
+            if (row++ == 0) {
+                for (std::string& part : parts) part = line + ",time\n";
+                for (std::string& plan : plans) plan = line + '\n';
+                continue;
+            }
+            const std::size_t comma = line.find(',');
+            const bool is_first = row <= 14;
+            const std::string rest = line.substr(comma) + ',' +
+                                     (is_first ? first_time : second_time) +
+                                     fmt::format("{:02}\n", (row * 7) % 60);
+            plans[is_first ? 0 : 1] += line + '\n';
+            parts[is_first ? 0 : 1] += line.substr(0, comma) + rest;
+            parts[2] += (is_first ? "old/" : "new/") + line.substr(0, comma) + rest;
+        }
+        write_text("first.csv", parts[0]);
+        write_text("second.csv", parts[1]);
+        write_text("old.csv", plans[0]);
+        write_text("new.csv", plans[1]);
+        write_text("both.csv", parts[2]);
+    };
+    const std::string pairs = "-m first.csv --plan old.csv -m second.csv --plan new.csv";
+    write_parts("2026-01-31 12:", "2026-01-31 14:");
+    const Outcome dated = run("calibrate c.yaml " + pairs + " -o dated.json");
+    EXPECT_EQ(dated.err, "");
+    const auto trends_of = [&](const std::string& arguments) {
+        run_well("calibrate c.yaml " + arguments + " -o e.json");
+        return nlohmann::json::parse(text_of("e.json")).at("accuracy").at("condition_trends");
+    };
+    const auto apart = trends_of(pairs);
+    const auto together = trends_of("-m both.csv");
+    ASSERT_EQ(apart.size(), 1U);
+    ASSERT_EQ(together.size(), 1U);
+    EXPECT_GT(apart[0].at("range"), 2);
+    EXPECT_NEAR(apart[0].at("range"), together[0].at("range"), 1e-12);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(apart[0].at("axes")[axis].at("change_mm"),
+                    together[0].at("axes")[axis].at("change_mm"), 1e-9);
+    }
+    write_parts("12:", "12:");
+    const Outcome two_clocks = run("calibrate c.yaml " + pairs);
+    EXPECT_NE(two_clocks.err.find("first.csv, second.csv: time is not shown to be of one clock"),
+              std::string::npos)
+        << two_clocks.err;
+    EXPECT_EQ(two_clocks.out.find("by the time"), std::string::npos);
+}
+
 TEST_F(Points, WhoMeasuredStandsInTheEstimate) {
     write_text("r.yaml", text_of("c.yaml") + "record: {operator: A. Smith, temperature_C: 21.5}\n");
     const std::string text = run_well("calibrate r.yaml -m m.csv -o r.json");

@@ -161,6 +161,20 @@ TEST(PlannedPoints, WithoutThoseThatAreMissing) {
               "3 of 4 poses, without 'p3', 3 points missing: P001_T1, P002_T2, V001_T2");
 }
 
+TEST(PlannedPoints, MayHaveTimesAndTemperatures) {
+    const MeasurementsFile noted = read_points(
+        "name,x_mm,y_mm,z_mm,time,temperature_C\n"
+        "P003_T1,7,8,9,12:30,21\nP001_T1,1,2,3,12:00,20\nP001_T2,1,2,3,12:06,20.5\n",
+        "");
+    EXPECT_TRUE(noted.unused_columns.empty());
+    ASSERT_EQ(noted.conditions.size(), 2U);
+    EXPECT_DOUBLE_EQ(noted.conditions[0].values.at("p3"), 27.0 / 60);
+    EXPECT_EQ(noted.conditions[0].values.at("p1"), 0);
+    EXPECT_EQ(noted.conditions[1].values.at("p1"), 20.25);
+    EXPECT_EQ(read_points("name,x_mm,y_mm,z_mm,time\nP003_T1,7,8,9,noon\n", "").unused_columns,
+              std::vector<std::string>{"time"});
+}
+
 TEST(PlannedPoints, InOrderWithoutThoseToVerify) {
     const MeasurementsFile some = read_points("1 2 3\n4 5 6\n7 8 9\n10 11 12\n13 14 15\n");
     EXPECT_EQ(some.ids, (std::vector<std::string>{"p1", "p2", "p3"}));

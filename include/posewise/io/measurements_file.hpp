@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,15 @@ struct Plan;
 
 namespace posewise::io {
 
+/// When measurements were taken, as means of each configuration.
+struct NotedTimes {
+    /// What they are counted in: "seconds", "time of day" or "date", with the zone that stands
+    /// behind (date+01:00); empty: not all alike.
+    std::string clock;
+    double first = 0;  ///< s
+    double last = 0;   ///< s
+};
+
 /// Measurements as a file has them.
 struct MeasurementsFile : Measurements {
     std::vector<std::string> unused_columns = {};  ///< names of columns that nothing is known about
@@ -23,6 +33,7 @@ struct MeasurementsFile : Measurements {
     /// By the columns time or time_s, in h since the first, and temperature_C; means of each
     /// configuration's samples. Columns that cannot be read all are among `unused_columns`.
     std::vector<Condition> conditions = {};
+    std::optional<NotedTimes> times = {};  ///< those of `conditions`
 };
 
 /// What the reader passed over, a sentence each: columns that it does not know, missing points.
@@ -54,6 +65,20 @@ struct PointsSource {
 /// of fields.
 MeasurementsFile read_measurements(const std::string& path, const CampaignFile& file,
                                    const PointsSource& points = {});
+
+/// Plans that were measured together, as one: the poses of all in their order, with their plan's
+/// name before the id, old/p1 for p1 of old.json, or with folders where several are called so.
+/// Throws InputError for a plan that is not of this campaign's robot and sensor.
+Plan join_plans(std::vector<Plan> plans, const std::vector<std::string>& paths,
+                const Campaign& campaign);
+
+/// Measurements of such plans, one for each, as one with the ids of join_plans(). Temperatures are
+/// kept if all have them; times if all have them and they are of one clock: dates, or each begins
+/// after the one before ended. Otherwise `joined` says so. Throws InputError if two have the same
+/// readings.
+MeasurementsFile join_measurements(std::vector<MeasurementsFile> parts,
+                                   const std::vector<std::string>& paths,
+                                   const std::vector<std::string>& plan_paths);
 
 /// Named configurations that need not have been measured.
 struct Configurations {

@@ -98,7 +98,7 @@ class RowReader {
         if (field_of_point_) corners_.add_to(samples);
     }
     /// What the columns of times and temperatures hold.
-    std::vector<Condition> conditions() const {
+    detail::NotedConditions conditions() const {
         return detail::mean_conditions(times_, temperatures_);
     }
     /// Of each row that is a configuration by itself, where the file says it.
@@ -484,15 +484,8 @@ ReadFile read_csv(detail::CsvReader csv, const std::string& path, const Campaign
     row.add_corners_to(samples);
     MeasurementsFile measurements{samples.finish(path), std::move(header.unused)};
     measurements.notation = row.notation();
-    measurements.conditions = row.conditions();
-    for (const auto& [name, is_there] :
-         {std::pair{detail::time_column, row.has(Role::Time)},
-          std::pair{detail::temperature_column, row.has(Role::Temperature)}}) {
-        const bool is_read =
-            std::ranges::any_of(measurements.conditions,
-                                [&](const Condition& one) { return name.starts_with(one.name); });
-        if (is_there && !is_read) measurements.unused_columns.emplace_back(name);
-    }
+    detail::keep_conditions(row.conditions(), row.has(Role::Time), row.has(Role::Temperature),
+                            measurements);
     if (measurements.notation == OrientationNotation::RollPitchYaw &&
         measurements.observations.cols() > 0) {
         measurements.roll_pitch_yaw = measurements.observations.rightCols(3);

@@ -5,9 +5,11 @@
 #include <chrono>
 #include <cmath>
 #include <map>
-#include <optional>
+#include <ranges>
+#include <string>
 
 #include "io/format/text.hpp"
+#include "measurement_columns.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -72,6 +74,17 @@ std::optional<double> seconds_of(std::string_view text) {
     return *date + *time;
 }
 
+/// What the text counts from, as io::NotedTimes::clock has it.
+std::string clock_of(std::string_view text) {
+    if (parse_number(text).ok()) return "seconds";
+    const std::size_t between = text.find_first_of(" T");
+    const bool is_date = between != std::string_view::npos;
+    const std::string_view time = is_date ? text.substr(between + 1) : text;
+    const std::size_t zone = time.find_first_of("Z+-");
+    return (is_date ? "date" : "time of day") +
+           (zone == std::string_view::npos ? "" : std::string(time.substr(zone)));
+}
+
 /// Means by configuration; nothing: a cell that cannot be read.
 template <typename Read>
 std::optional<std::map<std::string, double>> means_of(const Notes& notes, const Read& read) {
@@ -91,12 +104,15 @@ std::optional<std::map<std::string, double>> means_of(const Notes& notes, const 
 
 }  // namespace
 
-std::vector<Condition> mean_conditions(const Notes& times, const Notes& temperatures) {
-    std::vector<Condition> conditions;
+NotedConditions mean_conditions(const Notes& times, const Notes& temperatures) {
+    NotedConditions noted;
+    std::optional<std::string> clock;
     std::optional<double> before;
     double midnights = 0;  // s
     const auto read_time = [&](std::string_view text) -> std::optional<double> {
         auto seconds = seconds_of(text);
+        const std::string own = clock_of(text);
+        if (own != clock) clock = clock ? "" : own;
         const bool is_of_day = text.find(':') != std::string_view::npos &&
                                text.find_first_of(" T") == std::string_view::npos;
         if (!seconds || !is_of_day) return seconds;
@@ -105,19 +121,31 @@ std::vector<Condition> mean_conditions(const Notes& times, const Notes& temperat
         return *seconds + midnights;
     };
     if (auto means = means_of(times, read_time); means && !means->empty()) {
-        double first = means->begin()->second;
-        for (const auto& [id, seconds] : *means) first = std::min(first, seconds);
+        const auto [first, last] = std::ranges::minmax(std::views::values(*means));
         for (auto& [id, seconds] : *means) seconds = (seconds - first) / seconds_per_hour;
-        conditions.push_back({"time", "h", *means});
+        noted.conditions.push_back({"time", "h", *means});
+        noted.times = {clock.value_or(""), first, last};
     }
     const auto read_degrees = [](std::string_view text) -> std::optional<double> {
         const ParsedNumber number = parse_number(text);
         return number.ok() ? std::optional(number.value) : std::nullopt;
     };
     if (auto means = means_of(temperatures, read_degrees); means && !means->empty()) {
-        conditions.push_back({"temperature", "C", *means});
+        noted.conditions.push_back({"temperature", "C", *means});
     }
-    return conditions;
+    return noted;
+}
+
+void keep_conditions(NotedConditions noted, bool has_time, bool has_temperature,
+                     io::MeasurementsFile& file) {
+    file.conditions = std::move(noted.conditions);
+    file.times = std::move(noted.times);
+    for (const auto& [column, is_there] :
+         {std::pair{time_column, has_time}, std::pair{temperature_column, has_temperature}}) {
+        const bool is_read = std::ranges::any_of(
+            file.conditions, [&](const Condition& one) { return column.starts_with(one.name); });
+        if (is_there && !is_read) file.unused_columns.emplace_back(column);
+    }
 }
 
 }  // namespace posewise::detail

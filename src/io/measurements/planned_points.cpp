@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "core/text.hpp"
+#include "noted_conditions.hpp"
 #include "points_list.hpp"
 #include "posewise/task/plan.hpp"
 #include "sample_collector.hpp"
@@ -49,6 +50,7 @@ class Join {
         }
         check_unit();
         io::MeasurementsFile file{collect(), std::move(list_.unused), true, describe(is_by_name)};
+        note_conditions(file);
         return file;
     }
 
@@ -200,6 +202,23 @@ class Join {
             samples.add(sample, [&](Index) { return first->place; });
         }
         return samples.finish(path_);
+    }
+
+    /// In the order of the list, as they were measured.
+    void note_conditions(io::MeasurementsFile& file) const {
+        std::unordered_map<const NamedPoint*, const std::string*> id_of;
+        for (std::size_t place = 0; place < measured_.size(); ++place) {
+            if (measured_[place] != nullptr) id_of.emplace(measured_[place], &id(place));
+        }
+        Notes times, temperatures;
+        for (const NamedPoint& point : list_.points) {
+            const auto found = id_of.find(&point);
+            if (found == id_of.end()) continue;
+            times.emplace_back(*found->second, point.time);
+            temperatures.emplace_back(*found->second, point.temperature);
+        }
+        keep_conditions(mean_conditions(times, temperatures), list_.has_time, list_.has_temperature,
+                        file);
     }
 
     /// "18 of 20 poses, without p4, p9, 3 points missing: P001_T2, ..."; empty if all are there.

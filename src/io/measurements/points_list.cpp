@@ -10,6 +10,7 @@
 #include "core/text.hpp"
 #include "io/format/csv_reader.hpp"
 #include "io/format/text.hpp"
+#include "measurement_columns.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -103,6 +104,8 @@ struct Layout {
     std::size_t width = 0;
     std::optional<std::size_t> name;
     std::array<std::size_t, 3> coordinates{};
+    std::optional<std::size_t> time;
+    std::optional<std::size_t> temperature;
     bool has_header = false;
 };
 
@@ -154,12 +157,18 @@ class ListReader {
             } else if (std::ranges::find(names_of_name, words) != names_of_name.end()) {
                 if (layout_.name) throw error(0, "the header has two columns of names; keep one");
                 layout_.name = k;
+            } else if (titles[k] == time_column || titles[k] == time_seconds_column) {
+                layout_.time = k;
+            } else if (titles[k] == temperature_column) {
+                layout_.temperature = k;
             } else if (std::ranges::find(names_without_use, lower(titles[k])) ==
                        names_without_use.end()) {
                 list_.unused.push_back(titles[k]);
             }
         }
         for (std::size_t axis = 0; axis < 3; ++axis) layout_.coordinates[axis] = *found[axis];
+        list_.has_time = layout_.time.has_value();
+        list_.has_temperature = layout_.temperature.has_value();
         read_units(units);
     }
 
@@ -226,6 +235,8 @@ class ListReader {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             point.position[static_cast<Index>(axis)] = read_number(layout_.coordinates[axis]);
         }
+        if (layout_.time) point.time = fields[*layout_.time];
+        if (layout_.temperature) point.temperature = fields[*layout_.temperature];
         list_.points.push_back(std::move(point));
     }
 

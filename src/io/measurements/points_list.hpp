@@ -14,12 +14,16 @@ struct NamedPoint {
     std::string name;   ///< empty: the list has none
     Vector3d position;  ///< m; without a unit as it stands there
     FileLocation place;
+    std::string time{};         ///< as it stands there; empty: not stated
+    std::string temperature{};  ///< likewise
 };
 
 struct PointsList {
     std::vector<NamedPoint> points;
     const Unit* unit = nullptr;       ///< as stated in the header; nullptr: not
     std::vector<std::string> unused;  ///< names of columns that nothing is known about
+    bool has_time = false;
+    bool has_temperature = false;
 };
 
 /// Whether the text is a list of points rather than a table with the column `config`: by its first
@@ -29,9 +33,9 @@ bool is_points_list(const std::string& path, const std::string& content,
 
 /// Reads x, y, z, `name x y z`, `group name x y z` or `collection group name x y z`, separated by
 /// commas, semicolons, tabs or blanks, or columns under a header with x, y and z (`X`, `x_mm`,
-/// `X [mm]`, `Meas X`), and a name. Lines that begin with `//` or `#` are comments. `unit` is that
-/// of a list without header or unit in it; nullptr: not known. Throws InputError with
-/// path:line:column for anything else.
+/// `X [mm]`, `Meas X`), and a name, `time` and `temperature_C`. Lines that begin with `//` or `#`
+/// are comments. `unit` is that of a list without header or unit in it; nullptr: not known. Throws
+/// InputError with path:line:column for anything else.
 PointsList read_points_list(const std::string& path, std::string content, const Unit* unit);
 
 }  // namespace posewise::detail
