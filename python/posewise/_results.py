@@ -69,6 +69,17 @@ class GivenResult:
         return os.path.relpath(target)
 
 
+@dataclass(frozen=True)
+class OneOfSeveral(GivenResult):
+    """One of several plans, whose file's name stands before its poses' ids: plan1/p3."""
+
+    def beside(self, path: Path, name: str) -> str:
+        folder = path.with_name(f"{path.stem}.plans")
+        folder.mkdir(exist_ok=True)
+        self.result.write(folder / f"{name}.json")
+        return os.path.relpath(folder / f"{name}.json")
+
+
 def result_input(result: Written | None) -> Input | None:
     return None if result is None else GivenResult(result)
 

@@ -17,7 +17,7 @@ from . import _posewise
 from ._calls import InputError, Progress, as_json, call_options, check_kind, made, names
 from ._files import FilePath, Files, Input, Table, given, table, write_file
 from ._keywords import check_keywords
-from ._results import Result, read_result, result_input, symmetric, target_of
+from ._results import OneOfSeveral, Result, read_result, result_input, symmetric, target_of
 from .campaign import Campaign, Configurations
 
 if TYPE_CHECKING:
@@ -143,7 +143,8 @@ class Estimate(Result):
             name: _seen_from(target, one.beside(target, name)) for name, one in self._inputs.items()
         }
         document = dict(self.document)
-        document["measurements"] = beside["measurements"]
+        beside = _as_lists(beside)
+        document["measurements"] = ", ".join(beside["measurements"])
         document["made_from"] = {
             **document["made_from"],
             "campaign_file": _seen_from(target, self.campaign.beside(target)),
@@ -172,7 +173,9 @@ def _as_options(keywords: Mapping[str, Any]) -> dict[str, list[str]]:
     others = {"estimate": "from"}
     stated: dict[str, list[str]] = {}
     for key, value in keywords.items():
-        if key == "measurements" or value is None or (value is False and key != "prior"):
+        if value is None or (value is False and key != "prior"):
+            continue
+        if key == "measurements" and len(value) < 2:
             continue
         option = "no-prior" if value is False else others.get(key, key.replace("_", "-"))
         values = value if isinstance(value, list) else ["true" if isinstance(value, bool) else value]
@@ -217,9 +220,9 @@ def _rotation_vector(quaternion: Sequence[float]) -> np.ndarray[Any, Any]:
 
 def calibrate(
     campaign: Campaign,
-    measurements: Table,
+    measurements: Table | Sequence[Table],
     *,
-    plan: Plan | None = None,
+    plan: Plan | Sequence[Plan] | None = None,
     points_unit: str | None = None,
     validate: Table | None = None,
     refit: Sequence[str] | None = None,
@@ -247,7 +250,8 @@ def calibrate(
     ``measurements`` is a DataFrame with the columns of the CSV file (config, q1_deg, ..., p1_x_mm,
     ...; without config the index names the configurations), or the path of a file. With ``plan`` it
     may be an instrument's list of points (name, x, y, z), and only the plan's poses calibrate;
-    others judge. ``validate`` is measured elsewhere, only to judge. ``exclude`` are ids to leave out
+    others judge. Lists of measurements and of the plans that they are of, in the same order, are
+    calibrated together; their ids are then plan1/p3, plan2/p3 and so on. ``validate`` is measured elsewhere, only to judge. ``exclude`` are ids to leave out
     ([7, "9-12"]). By default every configuration is held out in turn up to 100 of them, else 10
     ``folds``; 0 holds none out. Other options, with their defaults, are those of ``posewise
     calibrate --help``.
@@ -260,9 +264,9 @@ def calibrate(
     """
     check_kind(campaign, Campaign, "campaign", is_needed=True)
     check_kind(estimate, Estimate, "estimate")
-    _check_plan(plan)
     if measurements is None:
         raise InputError("calibrate(): needs `measurements`")
+    measured = _measured_inputs(measurements, plan)
     keywords = {
         "points_unit": points_unit,
         "refit": names("refit", refit),
@@ -282,21 +286,57 @@ def calibrate(
         "force": force,
     }
     inputs = given({
-        "measurements": table(measurements, "measurements"),
-        "plan": result_input(plan),
         "validate": table(validate, "validate"),
         "estimate": result_input(estimate),
     })
-    check_keywords("calibrate", {**keywords, **inputs}, "a campaign")
+    check_keywords("calibrate", {**keywords, **inputs, **_as_lists(measured)}, "a campaign")
+    inputs = {**measured, **inputs}
     options = call_options(threads, time, progress)
     with Files() as files:
-        stated = as_json("calibrate", {**keywords, **files.open(inputs)})
+        stated = as_json("calibrate", {**keywords, **_as_lists(files.open(inputs))})
         document, text, doubts = files.named(_posewise.calibrate(campaign._core, stated, options))
     found = Estimate(campaign, document, text, doubts, inputs, keywords)
     return made(found, doubts, options)
 
 
-def _check_plan(plan: Plan | None) -> None:
+def _measured_inputs(
+    measurements: Table | Sequence[Table], plan: Plan | Sequence[Plan] | None
+) -> dict[str, Input]:
+    """Measurements and plan; of several plans measurements1, plan1, measurements2 and so on."""
     from .planning import Plan
 
-    check_kind(plan, Plan, "plan")
+    if not isinstance(measurements, (list, tuple)) and not isinstance(plan, (list, tuple)):
+        check_kind(plan, Plan, "plan")
+        return given({
+            "measurements": table(measurements, "measurements"), "plan": result_input(plan)
+        })
+    tables = list(measurements) if isinstance(measurements, (list, tuple)) else [measurements]
+    plans = list(plan) if isinstance(plan, (list, tuple)) else [plan]
+    if len(tables) != len(plans) or not plans:
+        raise InputError(
+            f"`measurements` is a list of {len(tables)}, `plan` of {len(plans)}; must be equally "
+            "many, at least one, so that each has the plan whose poses it is of"
+        )
+    inputs: dict[str, Input | None] = {}
+    for number, (one, own) in enumerate(zip(tables, plans), 1):
+        check_kind(own, Plan, "plan", is_needed=True)
+        if one is None:
+            raise InputError(f"`measurements` has nothing at place {number}; must have a table")
+        if any(own is other for other in plans[: number - 1]):
+            raise InputError("`plan` has the same one twice; must have different ones")
+        ending = str(number) if len(plans) > 1 else ""
+        inputs["measurements" + ending] = table(one, "measurements")
+        inputs["plan" + ending] = OneOfSeveral(own) if ending else result_input(own)
+    return given(inputs)
+
+
+def _as_lists(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Measurements and plans in lists, as they are stated to the library; the rest unchanged."""
+    lists: dict[str, Any] = {}
+    for key, value in values.items():
+        name = key.rstrip("0123456789")
+        if name in ("measurements", "plan"):
+            lists.setdefault(name, []).append(value)
+        else:
+            lists[key] = value
+    return lists

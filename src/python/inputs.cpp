@@ -28,6 +28,29 @@ void warn_beyond_limits(const Campaign& campaign, const RowMatrixXd& configurati
     }
 }
 
+void add_passed_over(const io::MeasurementsFile& measured, Sentences& warnings) {
+    for (std::string& sentence : io::describe_passed_over(measured)) {
+        warnings.push_back(std::move(sentence));
+    }
+}
+
+io::MeasurementsFile read_as_stated(const std::string& path, const io::CampaignFile& campaign,
+                                    Sentences& warnings, const io::PointsSource& points) {
+    io::MeasurementsFile measured = io::read_measurements(path, campaign, points);
+    add_passed_over(measured, warnings);
+    return measured;
+}
+
+io::MeasurementsFile without(const std::vector<std::string>& excluded,
+                             io::MeasurementsFile measured, const Campaign& campaign,
+                             Sentences& warnings) {
+    static_cast<Measurements&>(measured) = leave_out(measured, excluded);
+    warn_beyond_limits(campaign, measured.configurations, measured.ids, warnings);
+    const std::vector<Index> still = find_still_joints(campaign, measured.configurations);
+    if (!still.empty()) warnings.push_back(describe_still_joints(campaign, still));
+    return measured;
+}
+
 }  // namespace
 
 Earlier read_earlier(const std::string& path, const Campaign& campaign, const EarlierUse& use,
@@ -57,15 +80,28 @@ io::CampaignFile planned_campaign(const io::CampaignFile& campaign, const PlanCa
 io::MeasurementsFile read_measured(const std::string& path, const io::CampaignFile& campaign,
                                    const std::vector<std::string>& excluded, Sentences& warnings,
                                    const io::PointsSource& points) {
-    io::MeasurementsFile measured = io::read_measurements(path, campaign, points);
-    for (std::string& sentence : io::describe_passed_over(measured)) {
-        warnings.push_back(std::move(sentence));
+    return without(excluded, read_as_stated(path, campaign, warnings, points), campaign, warnings);
+}
+
+io::MeasurementsFile read_planned(const CalibrationCall& asked, const io::CampaignFile& campaign,
+                                  std::optional<Plan>& plan, Sentences& warnings) {
+    std::vector<Plan> plans;
+    for (const std::string& path : asked.plans) plans.push_back(io::read_plan(path));
+    std::vector<io::MeasurementsFile> parts;
+    for (std::size_t k = 0; k < asked.measurements.size(); ++k) {
+        const io::PointsSource points =
+            k < plans.size() ? io::PointsSource{&plans[k], asked.plans[k], asked.points_unit}
+                             : io::PointsSource{};
+        parts.push_back(read_as_stated(asked.measurements[k], campaign, warnings, points));
     }
-    static_cast<Measurements&>(measured) = leave_out(measured, excluded);
-    warn_beyond_limits(campaign, measured.configurations, measured.ids, warnings);
-    const std::vector<Index> still = find_still_joints(campaign, measured.configurations);
-    if (!still.empty()) warnings.push_back(describe_still_joints(campaign, still));
-    return measured;
+    if (plans.size() > 1) {
+        plan = io::join_plans(std::move(plans), asked.plans, campaign);
+        parts = {io::join_measurements(std::move(parts), asked.measurements, asked.plans)};
+        add_passed_over(parts.front(), warnings);
+    } else if (!plans.empty()) {
+        plan = std::move(plans.front());
+    }
+    return without(asked.options.excluded, std::move(parts.front()), campaign, warnings);
 }
 
 JudgeCalibration judge(bool is_forced, Sentences& warnings) {

@@ -30,6 +30,11 @@ io::MeasurementsFile read_measured(const std::string& path, const io::CampaignFi
                                    const std::vector<std::string>& excluded, Sentences& warnings,
                                    const io::PointsSource& points = {});
 
+/// The same of several plans, one for each, see io::join_measurements(). `plan` is what they are
+/// together; nothing: none is stated.
+io::MeasurementsFile read_planned(const CalibrationCall& asked, const io::CampaignFile& campaign,
+                                  std::optional<Plan>& plan, Sentences& warnings);
+
 /// Says what is doubtful about a calibration that something is built on; with faults it throws
 /// InputError, unless it is forced.
 JudgeCalibration judge(bool is_forced, Sentences& warnings);

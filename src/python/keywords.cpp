@@ -173,7 +173,7 @@ CalibrationCall calibration_call(const Keywords& keywords) {
     CalibrationCall call;
     CalibrationOptions& options = call.options;
     stated("measurements", call.measurements);
-    stated("plan", call.plan);
+    stated("plan", call.plans);
     stated("points_unit", call.points_unit);
     stated("validate", call.validation);
     stated("estimate", call.estimate);

@@ -41,8 +41,8 @@ std::optional<TargetOptions> target_options(const Keywords& keywords);
 /// What was asked of a calibration. Paths of files are empty where there is none.
 struct CalibrationCall {
     CalibrationOptions options;
-    std::string measurements;
-    std::string plan;
+    std::vector<std::string> measurements;
+    std::vector<std::string> plans;  ///< of these measurements; empty: none
     std::string points_unit;
     std::string validation;
     std::string estimate;

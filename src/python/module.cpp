@@ -338,10 +338,7 @@ Result calibrate_campaign(const io::CampaignFile& campaign, const std::string& k
             static_cast<Campaign&>(file) = with_free_errors(file, asked.free);
         }
         std::optional<Plan> plan;
-        if (!asked.plan.empty()) plan = io::read_plan(asked.plan);
-        const io::PointsSource points{plan ? &*plan : nullptr, asked.plan, asked.points_unit};
-        const auto measured =
-            read_measured(asked.measurements, file, options.excluded, warnings, points);
+        const auto measured = read_planned(asked, file, plan, warnings);
         if (!asked.estimate.empty()) {
             options.earlier =
                 read_earlier(asked.estimate, file, asked.earlier, asked.is_forced, warnings);

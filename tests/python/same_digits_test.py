@@ -1,5 +1,9 @@
 """Python and the program give the same numbers and the same warnings."""
 
+import json
+import os
+import subprocess
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -52,6 +56,45 @@ def test_conditions(run, fanuc, fanuc_path, measurements, tmp_path):
     assert_same(estimate.document, printed)
     trends = estimate.document["accuracy"]["condition_trends"]
     assert [one["name"] for one in trends] == ["time", "temperature"]
+
+
+def test_several_plans(run, fanuc, fanuc_path, tmp_path):
+    """Measurements of two plans, whose poses have the same names, as by the program."""
+    plans, tables = [], []
+    for number in (1, 2):
+        plan = pw.plan(fanuc, 14, criterion="d", pool=300, workspace_poses=50, verification=2,
+                       seed=number, effort="quick")
+        plan.write(tmp_path / f"plan{number}.json", csv=tmp_path / f"poses{number}.csv")
+        run("simulate", fanuc_path, "--configurations", f"poses{number}.csv", "--seed", number,
+            "-o", f"m{number}.csv", cwd=tmp_path)
+        plans.append(plan)
+        tables.append(pd.read_csv(
+            tmp_path / f"m{number}.csv", comment="#", dtype={"config": str},
+            float_precision="round_trip",
+        ))
+    pairs = ("-m", "m1.csv", "--plan", "plan1.json", "-m", "m2.csv", "--plan", "plan2.json")
+    printed = run("calibrate", fanuc_path, *pairs, "--exclude", "plan2/p3", cwd=tmp_path)
+    estimate = pw.calibrate(fanuc, tables, plan=plans, exclude=["plan2/p3"])
+    assert_same(estimate.document, printed)
+    estimate.write(tmp_path / "e.json")
+    options = json.loads((tmp_path / "e.json").read_text())["made_from"]["options"]
+    assert len(options["--measurements"]) == len(options["--plan"]) == 2
+    shown = subprocess.run(
+        [os.environ["POSEWISE_PROGRAM"], "report", "e.json", "-o", "e.html"],
+        cwd=tmp_path, capture_output=True, text=True, check=True,
+    )
+    assert shown.stderr == "" and "residuals" in shown.stdout
+    for measured, of, words in [
+        (tables, plans[:1], "must be equally many"),
+        (tables[0], plans, "must be equally many"),
+        (tables, [plans[0], plans[0]], "same one twice"),
+        (tables, [plans[0], None], "`plan` is a NoneType"),
+        ([tables[0], None], plans, "nothing at place 2"),
+        ([tables[0], tables[0]], plans, "measurements2: has the same readings as measurements1"),
+        ([], [], "at least one"),
+    ]:
+        with pytest.raises(pw.InputError, match=words):
+            pw.calibrate(fanuc, measured, plan=of)
 
 
 def test_predictions(run, fanuc, fanuc_path, measurements, measurements_path, tmp_path):
