@@ -50,24 +50,33 @@ std::string describe_part(const Judgement& judgement, const JudgedGroup& part,
                        others);
 }
 
+/// The poses of this kind that were judged, if there are any; `name`: which they are.
+std::optional<Judged> judge_at(const std::optional<Judgement>& judgement, const std::string& name,
+                               PoseGroup kind) {
+    if (!judgement) return std::nullopt;
+    const auto group = std::ranges::find(judgement->groups, kind, &JudgedGroup::group);
+    if (group == judgement->groups.end()) return std::nullopt;
+    return Judged{
+        group->found, group->interval,
+        fmt::format("at {}{}", describe_part(*judgement, *group, name),
+                    kind == PoseGroup::New ? "" : ", beyond the joint ranges calibrated with"),
+        *judgement->units, &*group};
+}
+
+/// Judgements at poses that were not calibrated with, and which poses these are.
+std::vector<std::pair<const std::optional<Judgement>*, const char*>> judgements(
+    const Calibration& calibration) {
+    return {{&calibration.validation, "of the validation"},
+            {&calibration.verification, "that the plan set aside to verify"},
+            {&calibration.left_out, "not in the plan"}};
+}
+
 /// Poses that were not calibrated with come first, those like the ones calibrated with before
 /// others.
 Judged judge(const Calibration& calibration) {
     for (const PoseGroup kind : {PoseGroup::New, PoseGroup::Beyond}) {
-        for (const auto& [judgement, name] :
-             {std::pair{&calibration.validation, "of the validation"},
-              std::pair{&calibration.verification, "that the plan set aside to verify"},
-              std::pair{&calibration.left_out, "not in the plan"}}) {
-            if (!*judgement) continue;
-            for (const JudgedGroup& group : (*judgement)->groups) {
-                if (group.group != kind) continue;
-                return {
-                    group.found, group.interval,
-                    fmt::format(
-                        "at {}{}", describe_part(**judgement, group, name),
-                        kind == PoseGroup::New ? "" : ", beyond the joint ranges calibrated with"),
-                    *(*judgement)->units, &group};
-            }
+        for (const auto& [judgement, name] : judgements(calibration)) {
+            if (const auto judged = judge_at(*judgement, name, kind)) return *judged;
         }
     }
     const Metrics& fit = calibration.estimate.fit;
@@ -89,6 +98,27 @@ std::string format_interval(const RmsInterval& interval, const AmountUnits& unit
                        format_error(interval.upper, units));
 }
 
+/// What was found at the validation or the verification beside the one that `judged` is of.
+std::string describe_others(const Calibration& calibration, const Judged& judged) {
+    std::string text;
+    if (!judged.group || !calibration.validation || !calibration.verification) return text;
+    for (const auto& [judgement, name] : judgements(calibration)) {
+        if (judgement == &calibration.left_out) continue;
+        const auto is_told = [&](const JudgedGroup& group) { return &group == judged.group; };
+        if (std::ranges::any_of((*judgement)->groups, is_told)) continue;
+        const auto found = judge_at(*judgement, name, PoseGroup::New);
+        const auto beyond = judge_at(*judgement, name, PoseGroup::Beyond);
+        const auto& other = found ? found : beyond;
+        if (!other) continue;
+        text += fmt::format(", {} RMS", format_error(other->found.rms(), other->units));
+        if (other->interval) {
+            text += fmt::format(" (95 %: {})", format_interval(*other->interval, other->units));
+        }
+        text += fmt::format(" {}", other->where);
+    }
+    return text;
+}
+
 std::string sum_up(const Calibration& calibration, const Judged& judged, const AmountUnits& units) {
     // The nominal robot at the same poses, base and targets fitted to the others as well.
     const auto& comparison = calibration.held_out_comparison;
@@ -102,7 +132,7 @@ std::string sum_up(const Calibration& calibration, const Judged& judged, const A
     if (judged.interval) {
         text += fmt::format(" (95 %: {})", format_interval(*judged.interval, judged.units));
     }
-    text += fmt::format(" {}", judged.where);
+    text += fmt::format(" {}", judged.where) + describe_others(calibration, judged);
     if (calibration.campaign.robot.parameter_count() == 0) {
         text += "; the robot is taken as it is";
     } else if (&judged.units == &units) {

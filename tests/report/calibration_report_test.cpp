@@ -171,6 +171,28 @@ TEST(FormatCalibration, SaysWhetherTheValidationIsAsExpected) {
         << report();
 }
 
+TEST(FormatCalibration, TellsOfVerificationBesideTheValidation) {
+    const Example example(40);
+    const Measurements others =
+        simulate(example.campaign, {.pose_count = 30, .seed = 9}).measurements;
+    CalibrationOptions options;
+    options.folds = 0;
+    for (Index i = 0; i < 30; ++i) options.used.push_back(i);
+    for (Index i = 30; i < 40; ++i) options.verification.push_back(i);
+    const auto accuracy = [&] {
+        return answer(calibrate(example.campaign, example.measurements, options))[0].text;
+    };
+    EXPECT_TRUE(holds(accuracy(), " that the plan set aside to verify; before ")) << accuracy();
+    EXPECT_FALSE(holds(accuracy(), "validation")) << accuracy();
+    options.validation = &others;
+    const std::string both = accuracy();
+    const std::size_t validation = both.find(" of the validation");
+    const std::size_t verification = both.find(" that the plan set aside to verify");
+    ASSERT_TRUE(validation < verification && verification != both.npos) << both;
+    EXPECT_TRUE(holds(both.substr(validation, verification - validation), " mm RMS (95 %: "))
+        << both;
+}
+
 TEST(FormatCalibration, ShowsWhatAnotherInstrumentJudgesInItsOwnUnits) {
     const Campaign tracked = testing::tracked_campaign(testing::fanuc());
     const Campaign seen = testing::before_camera(tracked, testing::fixed_camera());
