@@ -41,11 +41,9 @@ TEST(RobotPrograms, AreWhatStandsInTheGoldenFiles) {
 TEST(RobotPrograms, ComeBackToHalfOfTheLastDigit) {
     const TemporaryFolder folder;
     const CampaignFile campaign = cell_with(reversed_joints);
-    const Index programs =
-        std::max<Index>(sweep_count() / 10, 10);  // 1000 a format in all with 10 stops
     for (const ProgramFormat format : all_formats) {
         const VectorXd steps = joint_steps(format, campaign.controller);
-        for (Index i = 0; i < programs; ++i) {
+        for (Index i = 0; i < sweep_count(); ++i) {
             RandomStream stream(3, static_cast<std::uint64_t>(i));
             RobotProgram program = cell_program(campaign.controller);
             program.stops.clear();
