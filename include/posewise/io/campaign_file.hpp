@@ -63,6 +63,8 @@ struct CampaignFile : Campaign {
     ControllerJoints controller;   ///< joints of programs; the robot's own where nothing is stated
     std::string controller_maker;  ///< the family that `controller` is of; empty: none is stated
     bool has_controller_columns = false;  ///< measurements hold the controller's joints, so named
+    /// Which observation of robot_calibration's messages is measured with; empty: the only one.
+    std::string observation{};
 };
 
 /// Overrides whether the expected sizes are priors; nothing: as the file states. A full model

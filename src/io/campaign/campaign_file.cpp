@@ -165,7 +165,9 @@ void read_measurements_section(const YamlValue& value, CampaignFile& file) {
     const YamlMap map(value, keys::measurements);
     const auto columns = map.find("columns");
     file.has_controller_columns = columns && read_columns(*columns);
-    if (const auto mat = columns ? map.find("mat") : map.require("mat")) {
+    const auto observation = map.find("observation");
+    if (observation) file.observation = observation->text();
+    if (const auto mat = columns || observation ? map.find("mat") : map.require("mat")) {
         file.mat = read_mat_mapping(*mat, file.sensor->target_count());
     }
 }

@@ -390,6 +390,9 @@ const YamlKeys measurements{
          "model's",
          "`model`", "`controller`"},
         {"mat", "", "what the variables are called", "required for MATLAB files", ""},
+        {"observation", "",
+         "which `sensor_name` of robot_calibration's messages holds the points, where several do",
+         "the only one whose features move", "`camera`"},
     }};
 
 const YamlKeys mat{

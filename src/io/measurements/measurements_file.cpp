@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "calibration_data.hpp"
 #include "core/text.hpp"
+#include "foreign_tables.hpp"
 #include "io/format/atomic_file.hpp"
 #include "model/joint_limits.hpp"
 #include "planned_points.hpp"
@@ -29,6 +31,13 @@ MeasurementsFile read_as_stated(const std::string& path, const CampaignFile& fil
                                 const Campaign& table, const PointsSource& points) {
     if (is_matlab(path)) return {read_measurements_mat(path, table, file.mat)};
     std::string content = detail::read_file(path);
+    if (detail::is_calibration_data(content)) {
+        return detail::read_calibration_data(path, content, table, file.observation);
+    }
+    if (const auto kind = detail::foreign_table(path, content, file);
+        kind != detail::ForeignTable::None) {
+        return detail::read_foreign_table(path, std::move(content), file, kind);
+    }
     std::vector<std::string> joints;
     for (const Joint& joint : file.robot.joints()) joints.push_back(joint.name);
     if (detail::is_points_list(path, content, joints, points.plan != nullptr)) {
