@@ -217,8 +217,14 @@ std::string describe_earlier(const std::string& path, const EarlierUse& use) {
 }
 
 std::string describe_earlier(const PlanRequest& request) {
-    return describe_earlier(request.sources.estimate, request.earlier) +
-           describe_exact(request.earlier);
+    std::string text = describe_earlier(request.sources.estimate, request.earlier);
+    const bool counts = request.earlier.is_prior || !request.sources.augment.empty();
+    if (!text.empty() && !counts && request.earlier.only.empty()) {
+        text +=
+            "            the poses that it is from do not count; with --augment of what was "
+            "measured at them they do\n";
+    }
+    return text + describe_exact(request.earlier);
 }
 
 std::string describe_exact(const EarlierUse& use) {

@@ -114,7 +114,7 @@ std::string describe_remedy(const TargetPlanning& found) {
         text += fmt::format(
             "; once that is known the floor is {} mm: plan --poses 12, measure them, calibrate "
             "--out "
-            "estimate.json, and ask again with --from estimate.json",
+            "estimate.json, and ask again with --from estimate.json --augment of what was measured",
             format_mm(found.floor_of_known_model_error));
     }
     return text;
@@ -146,7 +146,7 @@ std::string describe_narrowing(const TargetPlanning& found) {
     if (is_narrow || is_told_by_estimate(planning.plan, planning.campaign.known_within)) return "";
     return fmt::format(
         "; plan --poses {}, measure them, calibrate --out estimate.json and ask again with --from "
-        "estimate.json: that knows the robot",
+        "estimate.json --augment of what was measured: that knows the robot",
         std::min<Index>(12, planning.search.pose_count));
 }
 
