@@ -186,12 +186,21 @@ Start find_start_of_parts(const Campaign& campaign, const CombinedSensor& combin
     std::vector<std::optional<Isometry3d>> bases(count);  // each in its instrument's frame
     std::optional<Isometry3d> base;
     for (std::size_t k = 0; k < count; ++k) {
+        unknowns[k] = combined.unknowns_of(static_cast<Index>(k), campaign.nominal.sensor);
+        frames[k] = combined.frame(static_cast<Index>(k), campaign.nominal.sensor);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
         const auto part = static_cast<Index>(k);
         const SensorPart& stated = combined.part(part);
-        unknowns[k] = combined.unknowns_of(part, campaign.nominal.sensor);
-        frames[k] = combined.frame(part, campaign.nominal.sensor);
         const detail::PartAlone only = detail::take_part(campaign, combined, part, measurements);
-        const Campaign& alone = only.campaign;
+        // A camera that has found itself by one board needs no more than a view of another.
+        const bool is_found = stated.same_camera && combined.has_only_shared_unknowns(part) &&
+                              bases[static_cast<std::size_t>(*stated.same_camera)];
+        if (is_found) {
+            unknowns[k] = combined.unknowns_of(part, combined.unknowns(unknowns, frames));
+        }
+        const Campaign alone =
+            is_found ? detail::with_known_sensor(only.campaign, unknowns[k]) : only.campaign;
         const Measurements& measured = only.measured;
         if (measured.configuration_count() == 0) {
             return {{campaign.nominal,
@@ -206,7 +215,7 @@ Start find_start_of_parts(const Campaign& campaign, const CombinedSensor& combin
         if (!found.is_determined()) {
             return {{campaign.nominal, name_of(combined, part) + ": " + found.undetermined}};
         }
-        unknowns[k] = found.parameters.sensor;
+        if (!is_found) unknowns[k] = found.parameters.sensor;
         bases[k] = found.parameters.world_from_base;
         if (!base && stated.known_frame) base = *stated.known_frame * *bases[k];
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <set>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "core/text.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/model/chain.hpp"
 
@@ -26,9 +28,35 @@ TwistMatrix as_seen_from(const Isometry3d& frame_from_world, const TwistMatrix& 
     return seen;
 }
 
+/// Names of what is unknown of a camera, rather than of the board that it sees.
+std::vector<std::string> of_camera(const Sensor& sensor) {
+    std::vector<std::string> names = sensor.unknown_names();
+    std::erase_if(names, [](const std::string& name) { return !name.starts_with("camera"); });
+    return names;
+}
+
+/// The camera that a part shares with one before it; nothing: it has its own.
+const CameraSensor* shared_camera(const std::vector<SensorPart>& parts, std::size_t part) {
+    const auto& same = parts[part].same_camera;
+    if (!same) return nullptr;
+    const auto as_camera = [&](std::size_t k) {
+        return dynamic_cast<const CameraSensor*>(parts[k].sensor.get());
+    };
+    const bool is_before = *same >= 0 && *same < static_cast<Index>(part);
+    const auto* const first = is_before ? as_camera(static_cast<std::size_t>(*same)) : nullptr;
+    const auto* const own = as_camera(part);
+    if (first == nullptr || own == nullptr) {
+        throw InputError("the same camera must be that of a sensor before, of kind camera");
+    }
+    const bool is_alike = first->setup().is_on_flange == own->setup().is_on_flange &&
+                          of_camera(*first) == of_camera(*own);
+    if (!is_alike) throw InputError("what is unknown of the same camera must be the same");
+    return first;
+}
+
 void check_parts(const std::vector<SensorPart>& parts) {
     if (parts.size() < 2) throw InputError("a combination needs two sensors or more");
-    std::size_t with_pixels = 0;
+    bool has_pixels = false;
     bool has_angles = false;
     for (const SensorPart& part : parts) {
         const auto& sensor = part.sensor;
@@ -44,18 +72,13 @@ void check_parts(const std::vector<SensorPart>& parts) {
                 "poses of a board that a camera on the flange records cannot be combined with "
                 "other sensors; state the corners that it sees (kind: camera)");
         }
-        with_pixels += sensor->has_pixels() ? 1 : 0;
+        has_pixels = has_pixels || sensor->has_pixels();
         has_angles = has_angles || (sensor->has_angles() && !sensor->has_pixels());
         if (frame && !frame->matrix().allFinite()) {
             throw InputError("the frame of a sensor has a value that is not a finite number");
         }
     }
-    if (with_pixels > 1) {
-        throw InputError(
-            "only one sensor may be a camera; further ones that see the same board are "
-            "other_cameras of the first");
-    }
-    if (with_pixels > 0 && has_angles) {
+    if (has_pixels && has_angles) {
         throw InputError(
             "a camera cannot be combined with poses; state points of the tool instead of its "
             "poses");
@@ -70,17 +93,24 @@ Index angles_of(const Sensor& sensor) {
     return sensor.rows_per_target() - sensor.lengths_per_target();
 }
 
+/// Whether what a part has on the flange is a camera that it shares.
+bool shares_targets(const std::vector<SensorPart>& parts, std::size_t part) {
+    const CameraSensor* const camera = shared_camera(parts, part);
+    return camera != nullptr && camera->setup().is_on_flange;
+}
+
 /// Of all parts, the unknowns of each in the combination's order: those with sizes, then of
 /// targets, then the others.
 Targets all_targets(const std::vector<SensorPart>& parts) {
     std::vector<Vector3d> positions;
     std::vector<std::array<bool, 3>> is_known;
     Index sizes = 0;
-    for (const SensorPart& part : parts) {
-        const Sensor& sensor = *part.sensor;
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        const Sensor& sensor = *parts[part].sensor;
         const Targets& targets = sensor.targets();
         const VectorXd zero = VectorXd::Zero(static_cast<Index>(sensor.unknown_names().size()));
         sizes += sensor.unknown_sizes().size();
+        if (shares_targets(parts, part)) continue;
         for (Index j = 0; j < targets.count(); ++j) {
             positions.push_back(targets.position(j, zero));
             is_known.push_back({targets.unknown_index(j, 0) < 0, targets.unknown_index(j, 1) < 0,
@@ -90,11 +120,16 @@ Targets all_targets(const std::vector<SensorPart>& parts) {
     return Targets(std::move(positions), std::move(is_known), sizes);
 }
 
-/// Puts `names` into those that are taken; false: some are already.
-bool take_names(const std::vector<std::string>& names, std::set<std::string>& taken) {
+/// Puts `names` into those that are taken, but for those not to be; false: some are already.
+bool take_names(const std::vector<std::string>& names, std::set<std::string>& taken,
+                const std::vector<bool>& is_left = {}) {
+    std::set<std::string> own;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        if (is_left.empty() || !is_left[k]) own.insert(names[k]);
+    }
     const bool are_new =
-        std::ranges::none_of(names, [&](const std::string& name) { return taken.contains(name); });
-    if (are_new) taken.insert(names.begin(), names.end());
+        std::ranges::none_of(own, [&](const std::string& name) { return taken.contains(name); });
+    if (are_new) taken.merge(own);
     return are_new;
 }
 
@@ -122,28 +157,50 @@ CombinedSensor::CombinedSensor(std::vector<SensorPart> parts)
     std::set<std::string> rows_taken;
     std::set<std::string> unknowns_taken;
     first_rows_.push_back(0);
-    for (SensorPart& stated : parts) {
-        const Sensor& sensor = *stated.sensor;
-        Part part{stated, row_count_, target_count(), points, sensor.lengths_per_target()};
-        const auto own = static_cast<Index>(sensor.unknown_names().size());
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        const Sensor& sensor = *parts[k].sensor;
+        Part part{parts[k], row_count_, target_count(), points, sensor.lengths_per_target()};
+        const Part* const shared = shared_camera(parts, k) ? &of(*parts[k].same_camera) : nullptr;
+        const auto names = sensor.unknown_names();
         const Index sizes = sensor.unknown_sizes().size();
         const Index of_targets = sensor.targets().unknown_count();
-        for (Index k = 0; k < own; ++k) {
-            Index& place = k < sizes ? next_size : k < sizes + of_targets ? next_target : next;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            const auto unknown = static_cast<Index>(i);
+            part.is_shared.push_back(shared != nullptr && names[i].starts_with("camera"));
+            if (part.is_shared.back()) {
+                const auto of_shared = shared->sensor().unknown_names();
+                const auto same = std::ranges::find(of_shared, names[i]) - of_shared.begin();
+                part.unknowns.push_back(shared->unknowns[static_cast<std::size_t>(same)]);
+                continue;
+            }
+            Index& place = unknown < sizes                ? next_size
+                           : unknown < sizes + of_targets ? next_target
+                                                          : next;
             part.unknowns.push_back(place++);
         }
         part.has_own_rows = take_names(sensor.observation_names(), rows_taken);
-        part.has_own_unknowns = take_names(sensor.unknown_names(), unknowns_taken);
+        part.has_own_unknowns = take_names(names, unknowns_taken, part.is_shared);
         for (Index target = 0; target < sensor.target_count(); ++target) {
             first_rows_.push_back(row_count_ + sensor.first_row(target + 1));
         }
         row_count_ += sensor.row_count();
-        points += sensor.targets().count();
+        if (shares_targets(parts, k)) {
+            part.first_point = shared->first_point;
+        } else {
+            points += sensor.targets().count();
+        }
         lengths_ = std::max(lengths_, part.lengths);
         angles_ = std::max(angles_, angles_of(sensor));
         parts_.push_back(std::move(part));
     }
-    for (Part& part : parts_) {
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+        Part& part = parts_[k];
+        if (part.stated.same_camera && !shares_targets(parts, k)) {  // the camera's own frame
+            const Part& same = of(*part.stated.same_camera);
+            part.frame = same.frame;
+            part.stated.known_frame = same.stated.known_frame;
+            continue;
+        }
         if (part.stated.known_frame) continue;
         part.frame = next;
         next += of_frame;
@@ -202,6 +259,10 @@ std::optional<double> CombinedSensor::target_radius() const {
     return largest;
 }
 
+bool CombinedSensor::has_only_shared_unknowns(Index part) const {
+    return std::ranges::all_of(of(part).is_shared, std::identity());
+}
+
 VectorXd CombinedSensor::unknowns_of(Index part, const VectorXd& unknowns) const {
     return unknowns(of(part).unknowns);
 }
@@ -209,7 +270,7 @@ VectorXd CombinedSensor::unknowns_of(Index part, const VectorXd& unknowns) const
 VectorXd CombinedSensor::unknowns(const std::vector<VectorXd>& of_parts,
                                   const std::vector<Isometry3d>& frames) const {
     VectorXd all(unknown_count_);
-    for (std::size_t k = 0; k < parts_.size(); ++k) {
+    for (std::size_t k = parts_.size(); k-- > 0;) {  // what parts share is the first one's
         all(parts_[k].unknowns) = of_parts[k];
         if (parts_[k].frame >= 0) all.segment<of_frame>(parts_[k].frame) = tool_unknowns(frames[k]);
     }
@@ -380,12 +441,17 @@ void CombinedSensor::view_clearances(const Isometry3d& world_from_flange, const 
 }
 
 Index CombinedSensor::least_in_view() const {
-    Index least = 0;
+    Index in_one_view = 0;
+    Index others = 0;
     for (const Part& part : parts_) {
-        least +=
-            part.sensor().has_view() ? part.sensor().least_in_view() : part.sensor().target_count();
+        const Sensor& sensor = part.sensor();
+        if (!sensor.has_view()) {
+            others += sensor.target_count();
+        } else if (in_one_view == 0 || sensor.least_in_view() < in_one_view) {
+            in_one_view = sensor.least_in_view();
+        }
     }
-    return least;
+    return in_one_view + others;
 }
 
 bool CombinedSensor::needs_first_guess() const {
@@ -411,10 +477,10 @@ std::vector<std::string> CombinedSensor::unknown_names() const {
         const auto own =
             with_prefix(part.has_own_unknowns ? "" : number, part.sensor().unknown_names());
         for (std::size_t i = 0; i < own.size(); ++i) {
-            names[static_cast<std::size_t>(part.unknowns[i])] = own[i];
+            if (!part.is_shared[i]) names[static_cast<std::size_t>(part.unknowns[i])] = own[i];
         }
         auto next = static_cast<std::size_t>(part.frame);
-        if (part.frame < 0) continue;
+        if (part.frame < 0 || !names[next].empty()) continue;
         for (const char* const name : {"x", "y", "z", "rx", "ry", "rz"}) {
             names[next++] = number + name;
         }

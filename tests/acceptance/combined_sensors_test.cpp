@@ -75,6 +75,11 @@ TEST(CombinedSensors, OfACameraAndPlanesStateDeviationsThatHold) {
     expect_covered(found, 60);
 }
 
+TEST(CombinedSensors, OfTwoBoardsBeforeOneCameraStateDeviationsThatHold) {
+    const Found found = calibrate_many(without_model_error(testing::two_boards), 30, 60);
+    expect_covered(found, 60);
+}
+
 /// What the camera tells comes on top: no parameter of robot, base and targets is known worse than
 /// by the tracker alone at the same poses, and some clearly better.
 TEST(CombinedSensors, TellNoLessThanOneOfThem) {

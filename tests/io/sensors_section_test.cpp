@@ -105,5 +105,97 @@ TEST(ReadSensors, ReadsATableWhereEitherSawNothing) {
     EXPECT_TRUE(back.observations.isApprox(measured.observations, 1e-14));
 }
 
+const std::string two_boards =
+    testing::two_joint_arm +
+    "base: {position_mm: [10, 20, 30], rpy_deg: [0, 0, 90]}\n"
+    "sensors:\n"
+    "  - kind: camera\n"
+    "    camera: flange\n"
+    "    sigma_px: 0.3\n"
+    "    intrinsics: {fx_px: 1200, fy_px: 1200, cx_px: 640, cy_px: 480, known: [cx, cy]}\n"
+    "    board: {columns: 3, rows: 2, square_mm: 25}\n"
+    "    place: {position_mm: [0, 0, 50], rpy_deg: [0, 0, 0]}\n"
+    "  - kind: camera\n"
+    "    same_camera: 1\n"
+    "    board: {columns: 2, rows: 2, square_mm: 30, sigma_mm: 0.1, first_point: 0}\n"
+    "    frame: {position_mm: [500, 0, 0], rpy_deg: [0, 0, 0]}\n";
+
+TEST(ReadSensors, KnowsTheSameCameraOfAnotherBoard) {
+    const CampaignFile file = parse_campaign(two_boards, "c.yaml");
+    const CombinedSensor& sensors = sensors_of(file);
+    const std::vector<std::string> names{
+        "board.p0.x", "board.p0.y", "board.p0.z", "board.p1.x", "board.p1.y", "board.p1.z",
+        "board.p2.x", "board.p2.y", "board.p2.z", "board.p3.x", "board.p3.y", "board.p3.z",
+        "camera.x",   "camera.y",   "camera.z",   "camera.rx",  "camera.ry",  "camera.rz",
+        "camera.fx",  "camera.fy",  "sensor2.x",  "sensor2.y",  "sensor2.z",  "sensor2.rx",
+        "sensor2.ry", "sensor2.rz"};
+    EXPECT_EQ(sensors.unknown_names(), names);
+    EXPECT_EQ(sensors.targets().count(), 1);
+    EXPECT_TRUE(file.has_nominal_targets);
+    // Of a fixed camera the boards are at different places, and its frame is one.
+    const std::string on_flange = "    frame: {position_mm: [500, 0, 0], rpy_deg: [0, 0, 0]}\n";
+    const std::string fixed =
+        replaced(replaced(two_boards, "camera: flange", "camera: fixed"), on_flange,
+                 "    place: {position_mm: [0, 80, 50], rpy_deg: [90, 0, 0]}\n");
+    const CampaignFile before = parse_campaign(fixed, "c.yaml");
+    const auto& boards = sensors_of(before);
+    EXPECT_EQ(boards.unknown_names().size(), names.size());
+    EXPECT_EQ(boards.unknown_names().back(), "sensor2.board.rz");
+    EXPECT_TRUE(boards.frame(1, before.nominal.sensor).isApprox(Isometry3d::Identity()));
+    EXPECT_EQ(boards.targets().count(), 2);
+    EXPECT_FALSE(parse_campaign(replaced(two_boards, on_flange, ""), "c.yaml").has_nominal_targets);
+}
+
+TEST(ReadSensors, SaysWhatIsWrongOfTheSameCamera) {
+    const auto error = [](const std::string& text) {
+        return input_error_of([&] { parse_campaign(text, "c.yaml"); });
+    };
+    expect_messages(
+        two_boards,
+        {{"same_camera: 1", "same_camera: 2",
+          "[...]sensors[2].same_camera is 2; must be the number of a sensor of kind camera[...]"},
+         {"same_camera: 1", "same_camera: 1\n    sigma_px: 0.3",
+          "[...]sensors[2].sigma_px is that of the same camera, stated before; must be left[...]"},
+         {"same_camera: 1", "same_camera: 1\n    place: {position_mm: [0, 0, 0]}",
+          "[...]sensors[2].place is that of the same camera, stated before; must be left[...]"},
+         {"    sigma_px", "    same_camera: 1\n    sigma_px",
+          "[...]sensors[1].same_camera is 1; must be the number of a sensor of kind[...]"}},
+        error, "c.yaml:");
+    const std::string tracker = replaced(two_trackers, "kind: points\n    sigma_mm: 0.1",
+                                         "kind: camera\n    same_camera: 1");
+    EXPECT_NE(error(tracker).find("must be the number of a sensor of kind camera before this one"),
+              std::string::npos);
+}
+
+TEST(ReadSensors, ReadsCornersOfTwoBoardsRowByRow) {
+    const TemporaryFolder folder;
+    const CampaignFile file = parse_campaign(two_boards, "c.yaml");
+    const std::string header = "config,q1_deg,q2_deg,u_px,v_px,point,sensor\n";
+    const auto read = [&](const std::string& rows) {
+        return read_measurements_csv(folder.write("m.csv", header + rows), file);
+    };
+    const Measurements measured = read("a,10,20,1,2,6,1\na,10,20,3,4,0,2\nb,1,2,5,6,3,2\n");
+    EXPECT_EQ(measured.is_seen.count(), 3);
+    EXPECT_TRUE(measured.is_seen(0, 5) && measured.is_seen(0, 6) && measured.is_seen(1, 9));
+    EXPECT_EQ(measured.observations(1, 19), 0.006);
+    const auto message = [&](const std::string& rows) {
+        return input_error_of([&] { read(rows); });
+    };
+    EXPECT_NE(message("a,10,20,1,2,4,2\n")
+                  .find("is '4'; must be the number of a corner of the "
+                        "board, 0 to 3"),
+              std::string::npos);
+    EXPECT_NE(message("a,10,20,1,2,1,3\n")
+                  .find("sensor is '3'; must be the number of one of the "
+                        "campaign's sensors, 1 to 2"),
+              std::string::npos);
+    EXPECT_NE(message("a,10,20,1,2,1,2\na,10,20,1,2,1,2\n").find("corner 1 of sensor 2 of conf"),
+              std::string::npos);
+    write_measurements_csv(folder.path("back.csv"), file, measured);
+    const Measurements back = read_measurements_csv(folder.path("back.csv"), file);
+    EXPECT_TRUE((back.is_seen == measured.is_seen).all());
+    EXPECT_TRUE(back.observations.isApprox(measured.observations, 1e-14));
+}
+
 }  // namespace
 }  // namespace posewise::io

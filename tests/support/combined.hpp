@@ -73,4 +73,24 @@ sensors:
     frame: first
 )";
 
+/// A camera on the flange before two boards that it seldom sees together.
+inline const std::string two_boards = "name: two boards\n" + combined_arm +
+                                      R"(base: {position_mm: [87, 550, 0], rpy_deg: [180, 0, 90]}
+sensors:
+  - kind: camera
+    camera: flange
+    image_px: [1280, 960]
+    sigma_px: 0.3
+    intrinsics: {fx_px: 1210, fy_px: 1210, cx_px: 640, cy_px: 480, known: false,
+                 distortion: {model: brown_conrady, coefficients: [-0.1, 0, 0, 0, 0]}}
+    board: {columns: 8, rows: 5, square_mm: 25}
+    place: {position_mm: [30, 40, 60], rpy_deg: [0, 0, 0]}
+    view: {most_tilt_deg: 55, least_corners: 20}
+  - kind: camera
+    same_camera: 1
+    board: {columns: 5, rows: 4, square_mm: 30, first_point: 0}
+    view: {least_corners: 12}
+    frame: {position_mm: [500, 100, -50], rpy_deg: [0, -25, 10]}
+)";
+
 }  // namespace posewise::testing

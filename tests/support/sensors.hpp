@@ -115,6 +115,27 @@ inline Campaign combined_campaign(const Campaign& first, const std::vector<Campa
     return with_sensor(first, sensor, sensor->unknowns(unknowns, frames));
 }
 
+/// One camera that sees two boards, the second one 1 m beside the first, on the same side of it.
+inline Campaign two_boards(const Campaign& from, const CameraSetup& setup) {
+    const Campaign first = before_camera(from, setup);
+    CameraSetup other = setup;
+    other.corners = chessboard(3, 3, 0.08);
+    const auto second = std::make_shared<CameraSensor>(other);
+    Isometry3d beside(Eigen::AngleAxisd(0.3, Vector3d(1, 0.5, 0.2).normalized()));
+    beside.translation() = Vector3d(1, 0.1, -0.2);
+    const auto sensor = std::make_shared<CombinedSensor>(std::vector<SensorPart>{
+        {first.sensor},
+        {second, setup.is_on_flange ? std::optional<Isometry3d>() : Isometry3d::Identity(), true,
+         true, 0}});
+    const Isometry3d place =
+        std::dynamic_pointer_cast<const CameraSensor>(first.sensor)->place(first.nominal.sensor);
+    const Isometry3d second_place = setup.is_on_flange ? place : place * beside;
+    return with_sensor(
+        first, sensor,
+        sensor->unknowns({first.nominal.sensor, second->unknowns(second_place, setup.intrinsics)},
+                         {Isometry3d::Identity(), beside}));
+}
+
 /// A tracker elsewhere, which sees one more target.
 inline Campaign second_tracker(const Campaign& from) {
     Campaign campaign =
@@ -155,6 +176,10 @@ inline std::vector<SensorCampaign> combined_campaigns(const Chain& robot) {
              combined_campaign(before_camera(points, camera_on_flange()), {touched_planes(points)},
                                true)},
             {"poses and points", combined_campaign(poses, {points})},
+            {"two boards before a camera on the flange", two_boards(points, camera_on_flange())},
+            {"two boards on the flange", two_boards(points, fixed_camera())},
+            {"a fixed camera and one on the flange",
+             combined_campaign(camera, {before_camera(points, camera_on_flange())})},
             {"tracker, camera roughly known and planes",
              combined_campaign(
                  points, {before_camera(points, camera_before_cube()), touched_planes(points)})}};

@@ -373,6 +373,9 @@ struct SensorPart {
     /// Whether nominal values of its unknowns are stated, if only roughly, and that of its frame.
     bool has_nominal_unknowns = true;
     bool has_nominal_frame = true;
+    /// Another part before it, from 0, which sees by the same camera: another board on the same
+    /// side, the flange or the world. What is unknown of the camera is unknown once.
+    std::optional<Index> same_camera{};
 };
 
 /// Several instruments that see the robot, each as it does alone: a tracker and a camera, or two
@@ -381,12 +384,13 @@ struct SensorPart {
 /// those whose sizes are known, then the coordinates of targets, then the others, and where the
 /// frame of each further one is in the first one's (position and rotation vector, sensor2.x to
 /// sensor2.rz). Names of a part that another one before it has begin with its number: s2_p1_x,
-/// sensor2.target1.x.
+/// sensor2.target1.x. What parts share of one camera has the first one's names.
 class CombinedSensor final : public Sensor {
   public:
     /// Throws InputError if there are fewer than two, if one is combined itself or is touched
-    /// (has_contacts()), records the inverse of poses, if more than one sees pixels or one beside
-    /// angles, or if the first one's known frame is not the identity.
+    /// (has_contacts()), records the inverse of poses, if one sees pixels beside another's angles,
+    /// if the first one's known frame is not the identity, or if a part is said to be of a camera
+    /// that another part is not, or that is fixed and in another frame.
     explicit CombinedSensor(std::vector<SensorPart> parts);
 
     Index part_count() const { return static_cast<Index>(parts_.size()); }
@@ -395,6 +399,8 @@ class CombinedSensor final : public Sensor {
     Index part_of(Index target) const;
     Index first_target(Index part) const { return of(part).first_target; }
     Index first_row_of(Index part) const { return of(part).first_row; }
+    /// Whether all that is unknown of a part, if anything, is of a camera that it shares.
+    bool has_only_shared_unknowns(Index part) const;
     /// The unknowns of one part, from all.
     VectorXd unknowns_of(Index part, const VectorXd& unknowns) const;
     /// All unknowns from those of each part and where its frame is in the first one's.
@@ -451,7 +457,7 @@ class CombinedSensor final : public Sensor {
     /// A part that shows fewer than the least it needs shows none.
     void view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                          Eigen::Ref<VectorXd> clearances) const override;
-    /// Each part with a view must see what it needs.
+    /// One at least of the parts with a view must see what it needs: the least that any needs.
     Index least_in_view() const override;
     bool needs_first_guess() const override;
     std::vector<NoiseNumber> noise_numbers() const override;
@@ -465,6 +471,7 @@ class CombinedSensor final : public Sensor {
         Index first_point = 0;
         Index lengths = 0;              ///< a target
         std::vector<Index> unknowns{};  ///< index of each among all
+        std::vector<bool> is_shared{};  ///< whether each is that of a part before
         Index frame = -1;               ///< of the first of six; -1: it is known
         bool has_own_rows = true;       ///< their names are no other part's
         bool has_own_unknowns = true;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "board_section.hpp"
 #include "camera_file.hpp"
@@ -173,7 +174,54 @@ std::vector<PlacedCamera> read_others(const YamlValue& list, CameraSetup& setup,
     return placed;
 }
 
+/// Where what is on the flange is, if it is stated.
+std::optional<Isometry3d> read_place(const YamlMap& sensor, CameraSetup& setup) {
+    const auto value = sensor.find("place");
+    if (!value) return std::nullopt;
+    const YamlMap map(*value, keys::places, "place");
+    const Isometry3d place = read_frame(map);
+    if (is_true(map, "known")) setup.known_place = place;
+    return place;
+}
+
+SensorSection make_camera(const YamlValue& board, CameraSetup setup, const Isometry3d& place,
+                          const std::vector<PlacedCamera>& others, bool are_placed) {
+    try {
+        auto camera = std::make_shared<CameraSensor>(std::move(setup));
+        VectorXd unknowns = camera->unknowns(place, camera->setup().intrinsics, others);
+        return {std::move(camera), std::move(unknowns), are_placed};
+    } catch (const InputError& e) {
+        throw board.error(std::string("cannot be used: ") + e.what());
+    }
+}
+
 }  // namespace
+
+SensorSection read_another_board(const YamlValue& value, const CameraSensor& camera) {
+    const YamlMap sensor(value, keys::sensor, "camera");
+    CameraSetup setup = camera.setup();
+    for (const YamlEntry& entry : value.entries()) {
+        const std::set<std::string_view> own{"kind", "same_camera", "board", "view",
+                                             setup.is_on_flange ? "frame" : "place"};
+        if (own.contains(entry.key)) continue;
+        throw entry.value.error(fmt::format(
+            "is that of the same camera, stated before; must be left out ({} are its own)",
+            setup.is_on_flange ? "board, view and frame" : "board, view and place"));
+    }
+    setup.corners.clear();
+    setup.corner_sigma = 0;
+    setup.first_corner = 1;
+    setup.pattern = {};
+    const YamlValue board = sensor.require("board");
+    read_board(board, setup);
+    setup.view.least_corners = std::min(setup.view.least_corners, std::ssize(setup.corners));
+    if (const auto view = sensor.find("view")) read_view(*view, setup);
+    if (setup.is_on_flange) return make_camera(board, std::move(setup), generic_place(), {}, true);
+    setup.known_place.reset();
+    const auto place = read_place(sensor, setup);
+    return make_camera(board, std::move(setup), place.value_or(generic_place()), {},
+                       place.has_value());
+}
 
 SensorSection read_camera(const YamlValue& value) {
     const YamlMap sensor(value, keys::sensor, "camera");
@@ -189,26 +237,14 @@ SensorSection read_camera(const YamlValue& value) {
     const YamlValue board = sensor.require("board");
     read_board(board, setup);
     if (const auto view = sensor.find("view")) read_view(*view, setup);
-    const auto place_value = sensor.find("place");
-    Isometry3d place = generic_place();
-    if (place_value) {
-        const YamlMap map(*place_value, keys::places, "place");
-        place = read_frame(map);
-        const auto known = map.find("known");
-        if (known && known->boolean()) setup.known_place = place;
-    }
-    bool are_placed = place_value.has_value() && setup.intrinsics.fx > 0;
+    const auto place = read_place(sensor, setup);
+    bool are_placed = place && setup.intrinsics.fx > 0;
     std::vector<PlacedCamera> others;
     if (const auto list = sensor.find("other_cameras")) {
         others = read_others(*list, setup, are_placed);
     }
-    try {
-        auto camera = std::make_shared<CameraSensor>(std::move(setup));
-        VectorXd unknowns = camera->unknowns(place, camera->setup().intrinsics, others);
-        return {std::move(camera), std::move(unknowns), are_placed};
-    } catch (const InputError& e) {
-        throw board.error(std::string("cannot be used: ") + e.what());
-    }
+    return make_camera(board, std::move(setup), place.value_or(generic_place()), others,
+                       are_placed);
 }
 
 }  // namespace posewise::detail

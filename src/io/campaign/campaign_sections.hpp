@@ -5,7 +5,7 @@
 
 #include "io/format/yaml_reader.hpp"
 #include "posewise/io/campaign_file.hpp"
-#include "posewise/measurement/sensor.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 
 /// The sections of a campaign file, one function each.
 namespace posewise::detail {
@@ -43,6 +43,8 @@ SensorSection read_sensor(const YamlValue& sensor);
 SensorSection read_sensors(const YamlValue& sensors);
 /// Of kind camera.
 SensorSection read_camera(const YamlValue& sensor);
+/// Of kind camera, with the key same_camera: `camera`, which sees another board.
+SensorSection read_another_board(const YamlValue& sensor, const CameraSensor& camera);
 
 /// `robot` gives the joints' names and limits.
 Cell read_cell(const YamlValue& cell, const Chain& robot, const Sensor& sensor);

@@ -229,6 +229,11 @@ const YamlKeys sensor{
          "further cameras, fixed to the first one, that see the same board; the measurements' "
          "column `camera` counts them from 2",
          "none", "`[{intrinsics: {file: left.yaml}}]`"},
+        {"same_camera", "camera",
+         "beside an earlier one (`sensors`), its number: the same camera sees another board; "
+         "`board`, "
+         "`view` and `frame` (of a fixed camera `place`) are then its only keys",
+         "another camera", "`1`"},
         {"view", "camera", "when corners count as seen in poses that are planned", "see below",
          "`{most_tilt_deg: 50}`"},
         {"measured", "poses",

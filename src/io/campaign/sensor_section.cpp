@@ -7,6 +7,7 @@
 #include "campaign_sections.hpp"
 #include "io/format/text.hpp"
 #include "keys.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/sensors.hpp"
 
 namespace posewise::detail {
@@ -414,6 +415,34 @@ SensorSection read_kind(const YamlValue& value) {
     throw kind.error("is " + quote(name) + "; " + suggest(name, names));
 }
 
+std::optional<YamlValue> find_entry(const YamlValue& sensor, std::string_view key) {
+    for (const YamlEntry& entry : sensor.entries()) {
+        if (entry.key == key) return entry.value;
+    }
+    return std::nullopt;
+}
+
+const CameraSensor* as_camera(const std::vector<SensorPart>& parts, Index part) {
+    return dynamic_cast<const CameraSensor*>(parts[static_cast<std::size_t>(part)].sensor.get());
+}
+
+/// Which of the sensors before it a further one is a camera of, by its number; nothing: of none.
+std::optional<Index> read_same_camera(const YamlValue& sensor,
+                                      const std::vector<SensorPart>& before) {
+    const auto value = find_entry(sensor, "same_camera");
+    if (!value) return std::nullopt;
+    const auto number = static_cast<Index>(value->natural_number());
+    const bool is_before = number >= 1 && number <= std::ssize(before);
+    if (is_before && as_camera(before, number - 1) != nullptr &&
+        !before[static_cast<std::size_t>(number - 1)].same_camera) {
+        return number - 1;
+    }
+    throw value->error(
+        fmt::format("is {}; must be the number of a sensor of kind camera before this one, which "
+                    "has intrinsics of its own",
+                    number));
+}
+
 /// Where a further sensor's frame is in the first one's.
 struct FrameSection {
     std::optional<Isometry3d> known;
@@ -422,10 +451,7 @@ struct FrameSection {
 };
 
 FrameSection read_sensor_frame(const YamlValue& sensor, bool is_first) {
-    std::optional<YamlValue> value;
-    for (const YamlEntry& entry : sensor.entries()) {
-        if (entry.key == "frame") value = entry.value;
-    }
+    const auto value = find_entry(sensor, "frame");
     const Isometry3d same = Isometry3d::Identity();
     if (is_first && value) {
         throw value->error("is of the first sensor, whose frame is the world; must be left out");
@@ -447,11 +473,11 @@ FrameSection read_sensor_frame(const YamlValue& sensor, bool is_first) {
 }  // namespace
 
 SensorSection read_sensor(const YamlValue& value) {
-    for (const YamlEntry& entry : value.entries()) {
-        if (entry.key != "frame") continue;
-        throw entry.value.error(
-            "is of a further one of several sensors (key 'sensors'); must be "
-            "left out");
+    for (const char* const key : {"frame", "same_camera"}) {
+        const auto found = find_entry(value, key);
+        if (!found) continue;
+        throw found->error(
+            "is of a further one of several sensors (key 'sensors'); must be left out");
     }
     return read_kind(value);
 }
@@ -470,12 +496,16 @@ SensorSection read_sensors(const YamlValue& list) {
     std::vector<Isometry3d> frames;
     bool has_positions = true;
     for (const YamlValue& value : values) {
-        SensorSection section = read_kind(value);
+        const auto same = read_same_camera(value, parts);
+        const CameraSensor* const camera = same ? as_camera(parts, *same) : nullptr;
+        SensorSection section =
+            camera != nullptr ? read_another_board(value, *camera) : read_kind(value);
         FrameSection frame = read_sensor_frame(value, parts.empty());
-        const bool has_frame = frame.known || frame.is_stated;
+        const bool has_own_frame = camera == nullptr || camera->setup().is_on_flange;
+        const bool has_frame = frame.known || frame.is_stated || !has_own_frame;
         has_positions = has_positions && section.has_positions && has_frame;
         parts.push_back(
-            {std::move(section.sensor), frame.known, section.has_positions, frame.is_stated});
+            {std::move(section.sensor), frame.known, section.has_positions, has_frame, same});
         unknowns.push_back(std::move(section.unknowns));
         frames.push_back(frame.nominal);
     }

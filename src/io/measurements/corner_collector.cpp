@@ -5,16 +5,22 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "measurement_columns.hpp"
 
 namespace posewise::detail {
 namespace {
 
-/// "7", or of several cameras "7 of camera 2".
+/// "7", or of several cameras "7 of camera 2", of several sensors "7 of sensor 2".
 std::string name_of_corner(const Sensor& sensor, Index target) {
-    const Index cameras = camera_count(sensor);
-    const Index corners = sensor.target_count() / cameras;
-    const std::string number = std::to_string(first_corner(sensor) + target % corners);
-    return cameras == 1 ? number : fmt::format("{} of camera {}", number, target / corners + 1);
+    const auto sensors = corner_sensors(sensor);
+    std::size_t of = sensors.size() - 1;
+    while (sensors[of].first_target > target) --of;
+    const CornerSensor& one = sensors[of];
+    const Index own = target - one.first_target;
+    std::string name = std::to_string(first_corner(*one.sensor) + own % one.corners());
+    if (one.cameras() > 1) name += fmt::format(" of camera {}", own / one.corners() + 1);
+    if (sensors.size() > 1) name += fmt::format(" of sensor {}", of + 1);
+    return name;
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
+
+#include "posewise/measurement/sensors.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -58,6 +61,25 @@ std::vector<WantedColumn> wanted_columns(const Campaign& campaign, Form form) {
         ++k;
     }
     return wanted;
+}
+
+std::vector<CornerSensor> corner_sensors(const Sensor& sensor) {
+    const auto* const combined = dynamic_cast<const CombinedSensor*>(&sensor);
+    if (combined == nullptr) return {{&sensor, 0}};
+    std::vector<CornerSensor> sensors;
+    for (Index k = 0; k < combined->part_count(); ++k) {
+        sensors.push_back({combined->part(k).sensor.get(), combined->first_target(k)});
+    }
+    return sensors;
+}
+
+std::vector<std::string_view> corner_columns(const Sensor& sensor) {
+    const auto sensors = corner_sensors(sensor);
+    std::vector<std::string_view> names{point_column};
+    const auto has_several = [](const CornerSensor& one) { return one.cameras() > 1; };
+    if (std::ranges::any_of(sensors, has_several)) names.push_back(camera_column);
+    if (sensors.size() > 1) names.push_back(sensor_column);
+    return names;
 }
 
 double for_people(const Campaign& campaign, Index joint, double value) {

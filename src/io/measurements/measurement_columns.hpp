@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/format/units.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/sensor.hpp"
@@ -20,8 +21,9 @@ inline constexpr std::string_view visible_targets = "visible_targets";
 inline constexpr std::string_view contact = "socket";
 
 /// Of a row that is one corner in an image: the corner's number, and the camera's where there are
-/// several.
+/// several, and before it the sensor's of several.
 inline constexpr std::string_view point_column = "point";
+inline constexpr std::string_view sensor_column = "sensor";
 inline constexpr std::string_view camera_column = "camera";
 
 /// Of a row of configurations: what the robot is sent there for.
@@ -52,6 +54,7 @@ enum class Role {
     Contact,
     Point,
     Camera,
+    Sensor,
     Joint,  ///< or a measured torque: a number of the configuration
     Observation,
     Orientation,
@@ -87,6 +90,18 @@ struct WantedColumn {
 
 /// What a row of measurements holds: a sample, or one corner of it as its number, u and v.
 enum class Form { RowEachSample, RowEachCorner };
+
+/// One of the sensors whose corners are rows, itself or of several.
+struct CornerSensor {
+    const Sensor* sensor = nullptr;
+    Index first_target = 0;  ///< of the campaign's
+
+    Index cameras() const { return camera_count(*sensor); }
+    Index corners() const { return sensor->target_count() / cameras(); }
+};
+std::vector<CornerSensor> corner_sensors(const Sensor& sensor);
+/// "point", and "camera" and "sensor" where a row must state them.
+std::vector<std::string_view> corner_columns(const Sensor& sensor);
 
 /// Joints, measured torques, then observations, but for contacts.
 std::vector<WantedColumn> wanted_columns(const Campaign& campaign, Form form = Form::RowEachSample);

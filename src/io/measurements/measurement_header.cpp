@@ -12,6 +12,9 @@
 namespace posewise::detail {
 namespace {
 
+constexpr std::array<std::pair<std::string_view, Role>, 3> corner_roles{
+    {{point_column, Role::Point}, {camera_column, Role::Camera}, {sensor_column, Role::Sensor}}};
+
 /// The columns of the header. `q1_rad` is looked up by its stem and its unit checked.
 class HeaderReader {
   public:
@@ -24,15 +27,15 @@ class HeaderReader {
           has_orientation_(campaign.sensor->has_orientation()),
           has_contact_(campaign.sensor->has_contacts()),
           target_count_(campaign.sensor->target_count()),
-          has_cameras_(form_ == Form::RowEachCorner && camera_count(*campaign.sensor) > 1),
+          of_corners_(form_ == Form::RowEachCorner ? corner_columns(*campaign.sensor)
+                                                   : std::vector<std::string_view>()),
           examples_{"config"} {
         if (!is_optional(Role::Sample)) examples_.emplace_back("sample");
         for (const WantedColumn& column : wanted_) {
             if (!is_optional(column.role)) examples_.push_back(column.example());
         }
         if (has_contact_) examples_.emplace_back(contact);
-        if (form_ == Form::RowEachCorner) examples_.emplace_back(point_column);
-        if (has_cameras_) examples_.emplace_back(camera_column);
+        examples_.insert(examples_.end(), of_corners_.begin(), of_corners_.end());
     }
 
     Header read() const {
@@ -124,8 +127,9 @@ class HeaderReader {
         if (name == visible_targets && !has_contact_) return Column{Role::VisibleTargets};
         if (name == purpose_column) return Column{Role::Purpose};
         if (name == contact && has_contact_) return Column{Role::Contact};
-        if (name == point_column && form_ == Form::RowEachCorner) return Column{Role::Point};
-        if (name == camera_column && form_ == Form::RowEachCorner) return Column{Role::Camera};
+        for (const auto& [of_corner, role] : corner_roles) {
+            if (name == of_corner && form_ == Form::RowEachCorner) return Column{role};
+        }
         if (content_ == Content::JointsAndObservations) {
             if (name == time_column || name == time_seconds_column) return Column{Role::Time};
             if (name == temperature_column) return Column{Role::Temperature};
@@ -241,10 +245,10 @@ class HeaderReader {
         if (has_contact_ && content_ != Content::Program && !has(Role::Contact, 0)) {
             missing.emplace_back(contact);
         }
-        if (form_ == Form::RowEachCorner && !has(Role::Point, 0)) {
-            missing.emplace_back(point_column);
+        for (const auto& [name, role] : corner_roles) {
+            const bool is_needed = std::ranges::find(of_corners_, name) != of_corners_.end();
+            if (is_needed && !has(role, 0)) missing.emplace_back(name);
         }
-        if (has_cameras_ && !has(Role::Camera, 0)) missing.emplace_back(camera_column);
         if (missing.empty()) return;
         for (const std::size_t field : unknown) {
             if (is_near(field, missing)) throw unknown_error(field);
@@ -291,7 +295,7 @@ class HeaderReader {
     bool has_orientation_;
     bool has_contact_;
     Index target_count_;
-    bool has_cameras_;  ///< several, of which a row of one corner must name its own
+    std::vector<std::string_view> of_corners_;  ///< columns by which a row of one corner names it
     std::vector<std::string> examples_;
 };
 

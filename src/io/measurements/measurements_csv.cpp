@@ -39,6 +39,7 @@ class RowReader {
           contacts_(campaign.sensor->contact_names()),
           field_of_joint_(static_cast<std::size_t>(campaign.robot.configuration_size())),
           field_of_observation_(static_cast<std::size_t>(campaign.sensor->row_count())),
+          corner_sensors_(detail::corner_sensors(*campaign.sensor)),
           corners_(campaign),
           is_each_row_one_(content == Content::Program &&
                            std::none_of(columns_.begin(), columns_.end(), [](const auto& column) {
@@ -49,6 +50,7 @@ class RowReader {
             if (columns_[field].role == Role::Purpose) field_of_purpose_ = field;
             if (columns_[field].role == Role::Point) field_of_point_ = field;
             if (columns_[field].role == Role::Camera) field_of_camera_ = field;
+            if (columns_[field].role == Role::Sensor) field_of_sensor_ = field;
             if (columns_[field].role == Role::Joint) field_of_joint_[index] = field;
             if (columns_[field].role == Role::Observation) field_of_observation_[index] = field;
             if (columns_[field].role == Role::Orientation) {
@@ -168,6 +170,7 @@ class RowReader {
             case Role::Time:         // by note_conditions()
             case Role::Temperature:  // likewise
             case Role::Point:        // by read_corner()
+            case Role::Sensor:       // likewise
             case Role::Camera:       // likewise
             case Role::Unused:
                 return;
@@ -303,9 +306,9 @@ class RowReader {
         if (!orientation_fields_.empty()) row_.observation.segment<3>(3) = read_orientation();
     }
 
-    /// A whole number from `first` to `last`.
-    Index read_count(std::size_t field, Index first, Index last, const char* of_what,
-                     const char* at_zero) const {
+    /// A whole number from `first` to `last` in a column.
+    Index read_count(std::string_view name, std::size_t field, Index first, Index last,
+                     const char* of_what, const char* at_zero) const {
         const detail::ParsedNumber number = detail::parse_number(csv_.fields()[field]);
         if (number.ok() && number.value >= static_cast<double>(first) &&
             number.value <= static_cast<double>(last) && number.value == std::floor(number.value)) {
@@ -313,11 +316,9 @@ class RowReader {
         }
         throw input_error_at(
             csv_.locate(field),
-            fmt::format(
-                "{} is {}; must be the number of {}, {} to {}{}",
-                columns_[field].role == Role::Point ? detail::point_column : detail::camera_column,
-                detail::quote(csv_.fields()[field]), of_what, first, last,
-                number.ok() && number.value == 0 && first == 1 ? at_zero : ""));
+            fmt::format("{} is {}; must be the number of {}, {} to {}{}", name,
+                        detail::quote(csv_.fields()[field]), of_what, first, last,
+                        number.ok() && number.value == 0 && first == 1 ? at_zero : ""));
     }
 
     /// The sensor that sees a target, if it is a camera, and the number of its camera.
@@ -333,29 +334,37 @@ class RowReader {
     }
 
     /// The camera of the row at hand, counted from 0.
-    Index read_camera() const {
+    Index read_camera(const detail::CornerSensor& of) const {
         if (!field_of_camera_) return 0;
-        const Index count = camera_count(*campaign_.sensor);
-        return read_count(*field_of_camera_, 1, count,
-                          count == 1 ? "the campaign's only camera (key sensor.other_cameras "
-                                       "states more)"
-                                     : "a camera",
+        return read_count(detail::camera_column, *field_of_camera_, 1, of.cameras(),
+                          of.cameras() == 1 ? "the campaign's only camera (key "
+                                              "sensor.other_cameras states more)"
+                                            : "a camera",
                           " (cameras count from 1)") -
                1;
     }
 
-    detail::Corner read_corner() {
-        const Index camera = read_camera();
-        const Index first = first_corner(*campaign_.sensor);
-        const Index corners = campaign_.sensor->target_count() / camera_count(*campaign_.sensor);
+    /// The sensor of the row at hand.
+    const detail::CornerSensor& read_sensor() const {
+        if (!field_of_sensor_) return corner_sensors_.front();
         const Index number =
-            read_count(*field_of_point_, first, first + corners - 1, "a corner of the board",
-                       " (board.first_point: 0 in the campaign counts from 0)");
-        detail::Corner corner{row_.id, row_.name, row_.joints, camera * corners + number - first,
-                              {},      {}};
+            read_count(detail::sensor_column, *field_of_sensor_, 1, std::ssize(corner_sensors_),
+                       "one of the campaign's sensors", " (sensors count from 1)");
+        return corner_sensors_[static_cast<std::size_t>(number - 1)];
+    }
+
+    detail::Corner read_corner() {
+        const detail::CornerSensor& of = read_sensor();
+        const Index camera = read_camera(of);
+        const Index first = first_corner(*of.sensor);
+        const Index number = read_count(detail::point_column, *field_of_point_, first,
+                                        first + of.corners() - 1, "a corner of the board",
+                                        " (board.first_point: 0 in the campaign counts from 0)");
+        const Index target = of.first_target + camera * of.corners() + number - first;
+        detail::Corner corner{row_.id, row_.name, row_.joints, target, {}, {}};
         corner.place << read_number(field_of_observation_[0]),
             read_number(field_of_observation_[1]);
-        check_in_image(corner.place, camera_of(0).first->camera(camera), 0);
+        check_in_image(corner.place, camera_of(target).first->camera(camera), 0);
         for (const std::size_t joint : field_of_joint_)
             corner.locations.push_back(csv_.locate(joint));
         return corner;
@@ -453,6 +462,8 @@ class RowReader {
     std::optional<std::size_t> field_of_purpose_;
     std::optional<std::size_t> field_of_point_;
     std::optional<std::size_t> field_of_camera_;
+    std::optional<std::size_t> field_of_sensor_;
+    std::vector<detail::CornerSensor> corner_sensors_;
     detail::CornerCollector corners_;
     bool is_via_ = false;  ///< the row at hand
     std::vector<std::string> purposes_;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 
 #include "core/text.hpp"
@@ -46,15 +47,24 @@ std::string observation_cells(const Sensor& sensor, const Measurements& measurem
 /// A row for each corner seen: its place in px and its number.
 void write_corners(const Sensor& sensor, const Measurements& measurements, Index sample,
                    const std::string& before, std::string& text) {
-    const Index first = first_corner(sensor);
-    const Index cameras = camera_count(sensor);
-    const Index corners = measurements.is_seen.cols() / cameras;
-    for (Index target = 0; target < measurements.is_seen.cols(); ++target) {
-        if (!measurements.is_seen(sample, target)) continue;
-        const VectorXd place = 1e3 * measurements.observation(sample, target).transpose();
-        fmt::format_to(std::back_inserter(text), "{},{},{},{}{}\n", before, place[0], place[1],
-                       first + target % corners,
-                       cameras > 1 ? fmt::format(",{}", target / corners + 1) : "");
+    const auto columns = detail::corner_columns(sensor);
+    const auto has = [&](std::string_view name) {
+        return std::ranges::find(columns, name) != columns.end();
+    };
+    const auto sensors = detail::corner_sensors(sensor);
+    for (std::size_t k = 0; k < sensors.size(); ++k) {
+        const detail::CornerSensor& one = sensors[k];
+        for (Index own = 0; own < one.sensor->target_count(); ++own) {
+            const Index target = one.first_target + own;
+            if (!measurements.is_seen(sample, target)) continue;
+            const VectorXd place =
+                1e3 * measurements.observations.row(sample).segment<2>(2 * target);
+            fmt::format_to(std::back_inserter(text), "{},{},{},{}", before, place[0], place[1],
+                           first_corner(*one.sensor) + own % one.corners());
+            if (has(detail::camera_column)) text += fmt::format(",{}", own / one.corners() + 1);
+            if (has(detail::sensor_column)) text += fmt::format(",{}", k + 1);
+            text += '\n';
+        }
     }
 }
 
@@ -102,8 +112,10 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
     }
     const bool has_contact = campaign.sensor->has_contacts();
     if (has_contact) fmt::format_to(out, ",{}", detail::contact);
-    if (has_corners) fmt::format_to(out, ",{}", detail::point_column);
-    if (camera_count(*campaign.sensor) > 1) fmt::format_to(out, ",{}", detail::camera_column);
+    if (has_corners) {
+        for (const auto& name : detail::corner_columns(*campaign.sensor))
+            text.append(1, ',') += name;
+    }
     text += '\n';
     for (Index i = 0; i < measurements.configuration_count(); ++i) {
         const auto k = static_cast<std::size_t>(i);
