@@ -144,7 +144,7 @@ Start solve_linear(const Campaign& campaign, const ObservedPoints& observed,
     // Of several cameras each may be the one that is at fault, in whatever views it has; few
     // corners that are not exactly where they are stated tell poses too badly to be compared.
     if (campaign.sensor->has_pixels() && camera_count(*campaign.sensor) == 1 &&
-        campaign.sensor->unknown_sizes().size() == 0) {
+        has_exact_corners(*campaign.sensor)) {
         views = find_views(campaign, observed, points);
         means = take(means, views);
         points = take(points, views);

@@ -114,12 +114,15 @@ void set_unknowns(const CameraSensor& sensor, Index camera, Index k, const Corne
     rows.setZero();
     const Index errors = sensor.corner_error_count();
     if (errors > 0) rows.middleCols<3>(3 * k) = corner.by_corner;
-    if (!sensor.setup().known_place) rows.middleCols<6>(errors) = corner.by_place;
-    if (camera > 0) rows.middleCols<6>(sensor.first_unknown(camera)) = corner.by_camera;
-    Index next = sensor.first_intrinsic(camera);
-    for (const Index value : sensor.unknown_intrinsics(camera)) {
-        rows.col(next++) = corner.by_values.col(value);
+    if (!sensor.setup().known_place) {
+        rows.middleCols<6>(sensor.first_of_place()) = corner.by_place;
     }
+    if (camera > 0) rows.middleCols<6>(sensor.first_unknown(camera)) = corner.by_camera;
+    const auto set = [&](Index first, const std::vector<Index>& values) {
+        for (const Index value : values) rows.col(first++) = corner.by_values.col(value);
+    };
+    set(sensor.first_intrinsic(camera), sensor.unknown_intrinsics(camera));
+    set(sensor.first_intrinsic_error(camera), sensor.doubtful_intrinsics(camera));
     if (!sensor.setup().is_scale_unknown) return;
     rows.rightCols<1>() = corner.by_corner * sensor.setup().corners[static_cast<std::size_t>(k)];
 }
@@ -136,6 +139,10 @@ CameraInFirst detail::camera_in_first(const CameraSensor& sensor, Index camera,
     for (const Index k : sensor.unknown_intrinsics(camera)) {
         lens.values[static_cast<std::size_t>(k)] = unknowns[next++];
     }
+    next = sensor.first_intrinsic_error(camera);
+    for (const Index k : sensor.doubtful_intrinsics(camera)) {
+        lens.values[static_cast<std::size_t>(k)] += unknowns[next++];
+    }
     if (camera == 0) return {Isometry3d::Identity(), lens, Matrix3d::Zero()};
     return {frame_from(unknowns.segment<6>(first)), lens,
             rotation_vector_rate(unknowns.segment<3>(first + 3))};
@@ -145,7 +152,7 @@ BoardFromCamera detail::board_from_camera(const CameraSensor& sensor,
                                           const Isometry3d& world_from_flange,
                                           const VectorXd& unknowns) {
     const CameraSetup& setup = sensor.setup();
-    const Index turn = sensor.corner_error_count() + 3;
+    const Index turn = sensor.first_of_place() + 3;
     return {setup.is_on_flange, sensor.place(unknowns),
             sensor.camera_from_board(world_from_flange, unknowns), world_from_flange.linear(),
             setup.known_place ? Matrix3d::Zero().eval()

@@ -32,6 +32,21 @@ void check(SingleCamera& camera) {
         throw InputError(fmt::format("{} intrinsic parameters are said to be known or not, not {}",
                                      camera.is_known.size(), values));
     }
+    if (camera.deviations.empty()) camera.deviations.assign(values, 0);
+    if (camera.deviations.size() != values) {
+        throw InputError(fmt::format("{} deviations of intrinsic parameters are stated, not {}",
+                                     camera.deviations.size(), values));
+    }
+    for (std::size_t k = 0; k < values; ++k) {
+        if (std::isfinite(camera.deviations[k]) && camera.deviations[k] >= 0 &&
+            (camera.deviations[k] == 0 || camera.is_known[k])) {
+            continue;
+        }
+        throw InputError(
+            fmt::format("the deviation of {} must be a finite number, 0 or more, of "
+                        "an intrinsic parameter that is known",
+                        camera.intrinsics.names()[k]));
+    }
     Intrinsics assumed = camera.intrinsics;
     if (assumed.fx == 0 && !camera.is_known[0]) assumed.fx = 1;
     if (assumed.fy == 0 && !camera.is_known[1]) assumed.fy = 1;
@@ -62,6 +77,17 @@ CameraSetup checked(CameraSetup setup) {
     return setup;
 }
 
+/// How many unknowns have a size that is known.
+Index sized_count(const CameraSetup& setup) {
+    const auto doubtful = [](const SingleCamera& camera) {
+        return std::ranges::count_if(camera.deviations, [](double sigma) { return sigma > 0; });
+    };
+    Index count = setup.corner_sigma > 0 ? 3 * std::ssize(setup.corners) : 0;
+    count += doubtful(setup);
+    for (const SingleCamera& other : setup.others) count += doubtful(other);
+    return count;
+}
+
 /// "camera.", "camera2."
 std::string prefix_of(Index camera) {
     return camera == 0 ? "camera." : fmt::format("camera{}.", camera + 1);
@@ -78,11 +104,17 @@ Isometry3d detail::frame_from(const Eigen::Ref<const VectorXd>& six) {
 
 CameraSensor::CameraSensor(CameraSetup setup)
     : setup_(checked(std::move(setup))),
-      origin_(point_of_place(setup_.known_place), corner_error_count()) {
-    unknown_count_ = corner_error_count() + (has_unknown_place() ? 6 : 0);
+      origin_(point_of_place(setup_.known_place), sized_count(setup_)) {
+    std::vector<double> sizes(static_cast<std::size_t>(corner_error_count()), setup_.corner_sigma);
+    unknown_count_ = sized_count(setup_) + (has_unknown_place() ? 6 : 0);
     for (Index c = 0; c < camera_count(); ++c) {
-        OwnUnknowns own{unknown_count_, {}};
+        OwnUnknowns own{unknown_count_, {}, std::ssize(sizes)};
         const SingleCamera& one = camera(c);
+        for (std::size_t k = 0; k < one.deviations.size(); ++k) {
+            if (one.deviations[k] == 0) continue;
+            own.doubtful.push_back(static_cast<Index>(k));
+            sizes.push_back(one.deviations[k]);
+        }
         for (std::size_t k = 0; k < one.is_known.size(); ++k) {
             if (!one.is_known[k]) own.intrinsics.push_back(static_cast<Index>(k));
         }
@@ -93,6 +125,7 @@ CameraSensor::CameraSensor(CameraSetup setup)
         own_.push_back(std::move(own));
     }
     if (setup_.is_scale_unknown) ++unknown_count_;
+    sizes_ = Eigen::Map<const VectorXd>(sizes.data(), std::ssize(sizes));
     if (const auto plane = detail::plane_of(setup_.corners)) {
         const Vector3d normal = plane->linear().col(2);
         const bool is_plus = normal.z() > 0 || (normal.z() == 0 && normal.sum() > 0);
@@ -107,7 +140,7 @@ const SingleCamera& CameraSensor::camera(Index camera) const {
 
 Isometry3d CameraSensor::place(const VectorXd& unknowns) const {
     if (setup_.known_place) return *setup_.known_place;
-    return detail::frame_from(unknowns.segment<6>(corner_error_count()));
+    return detail::frame_from(unknowns.segment<6>(first_of_place()));
 }
 
 PlacedCamera CameraSensor::placed(Index camera, const VectorXd& unknowns) const {
@@ -119,6 +152,8 @@ PlacedCamera CameraSensor::placed(Index camera, const VectorXd& unknowns) const 
     const std::vector<Index>& unknown = unknown_intrinsics(camera);
     VectorXd values = placed.intrinsics.values();
     values(unknown) = unknowns.segment(first_intrinsic(camera), std::ssize(unknown));
+    const std::vector<Index>& doubtful = doubtful_intrinsics(camera);
+    values(doubtful) += unknowns.segment(first_intrinsic_error(camera), std::ssize(doubtful));
     placed.intrinsics = placed.intrinsics.with(values);
     return placed;
 }
@@ -139,7 +174,7 @@ bool CameraSensor::is_seen_from_back(Index camera, const Isometry3d& world_from_
 VectorXd CameraSensor::unknowns(const Isometry3d& place, const Intrinsics& intrinsics,
                                 const std::vector<PlacedCamera>& others) const {
     VectorXd unknowns = VectorXd::Zero(unknown_count_);
-    if (has_unknown_place()) unknowns.segment<6>(corner_error_count()) = tool_unknowns(place);
+    if (has_unknown_place()) unknowns.segment<6>(first_of_place()) = tool_unknowns(place);
     for (Index c = 0; c < camera_count(); ++c) {
         const auto other = static_cast<std::size_t>(c - 1);
         const bool is_placed = c > 0 && other < others.size();
@@ -151,6 +186,9 @@ VectorXd CameraSensor::unknowns(const Isometry3d& place, const Intrinsics& intri
                                              : camera(c).intrinsics;
         const std::vector<Index>& unknown = unknown_intrinsics(c);
         unknowns.segment(first_intrinsic(c), std::ssize(unknown)) = lens.values()(unknown);
+        const std::vector<Index>& doubtful = doubtful_intrinsics(c);
+        unknowns.segment(first_intrinsic_error(c), std::ssize(doubtful)) =
+            lens.values()(doubtful) - camera(c).intrinsics.values()(doubtful);
     }
     return unknowns;
 }
@@ -172,6 +210,12 @@ std::vector<std::string> CameraSensor::unknown_names() const {
     for (Index k = 0; k < corner_error_count(); ++k) {
         names.push_back(fmt::format("board.p{}.{}", setup_.first_corner + k / 3, "xyz"[k % 3]));
     }
+    for (Index c = 0; c < camera_count(); ++c) {
+        const auto of_values = camera(c).intrinsics.names();
+        for (const Index k : doubtful_intrinsics(c)) {
+            names.push_back(prefix_of(c) + "d" + of_values[static_cast<std::size_t>(k)]);
+        }
+    }
     const auto add_pose = [&names](const std::string& of) {
         for (const char* const name : {"x", "y", "z", "rx", "ry", "rz"}) names.push_back(of + name);
     };
@@ -192,7 +236,8 @@ std::vector<bool> CameraSensor::unknown_is_angle() const {
     const auto set_lengths = [&is_angle](Index first, Index count) {
         std::fill_n(is_angle.begin() + first, count, false);
     };
-    set_lengths(0, corner_error_count() + (has_unknown_place() ? 3 : 0));
+    set_lengths(0, corner_error_count());
+    if (has_unknown_place()) set_lengths(first_of_place(), 3);
     for (Index c = 1; c < camera_count(); ++c) set_lengths(first_unknown(c), 3);
     return is_angle;
 }
@@ -200,10 +245,12 @@ std::vector<bool> CameraSensor::unknown_is_angle() const {
 std::vector<const AmountUnits*> CameraSensor::unknown_units() const {
     auto units = Sensor::unknown_units();
     for (Index c = 0; c < camera_count(); ++c) {
-        auto next = units.begin() + first_intrinsic(c);
-        for (const Index k : unknown_intrinsics(c)) {
-            *next++ = k < 4 ? &pixel_units : &plain_units;
-        }
+        const auto set = [&units](Index first, const std::vector<Index>& values) {
+            auto next = units.begin() + first;
+            for (const Index k : values) *next++ = k < 4 ? &pixel_units : &plain_units;
+        };
+        set(first_intrinsic(c), unknown_intrinsics(c));
+        set(first_intrinsic_error(c), doubtful_intrinsics(c));
     }
     if (setup_.is_scale_unknown) units.back() = &plain_units;
     return units;
@@ -281,15 +328,17 @@ void CameraSensor::view_clearances(const Isometry3d& world_from_flange, const Ve
 
 SensorWords CameraSensor::words() const {
     const std::string what = setup_.is_on_flange ? "camera" : "board";
-    std::size_t unknown = 0, all = 0;
+    std::size_t unknown = 0, doubtful = 0, all = 0;
     for (Index c = 0; c < camera_count(); ++c) {
         unknown += unknown_intrinsics(c).size();
+        doubtful += doubtful_intrinsics(c).size();
         all += camera(c).is_known.size();
     }
     std::string intrinsics = "intrinsics known";
     if (unknown > 0) {
         intrinsics = fmt::format("{} of {} intrinsic parameters to be identified", unknown, all);
     }
+    if (doubtful > 0) intrinsics += fmt::format(", {} known with a deviation", doubtful);
     std::string seen_by = setup_.is_on_flange ? "a camera on the flange" : "a camera that is fixed";
     std::string unknowns = what + " in the flange frame";
     if (camera_count() > 1) {
@@ -326,6 +375,11 @@ Index first_corner(const Sensor& sensor) {
 Index camera_count(const Sensor& sensor) {
     const CameraSensor* const camera = as_camera(sensor);
     return camera != nullptr ? camera->camera_count() : 1;
+}
+
+bool has_exact_corners(const Sensor& sensor) {
+    const auto* const camera = dynamic_cast<const CameraSensor*>(&sensor);
+    return camera != nullptr ? camera->has_exact_corners() : sensor.unknown_sizes().size() == 0;
 }
 
 }  // namespace posewise

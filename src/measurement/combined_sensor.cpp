@@ -93,6 +93,16 @@ Index angles_of(const Sensor& sensor) {
     return sensor.rows_per_target() - sensor.lengths_per_target();
 }
 
+/// How many unknowns of known size a part has that are not those of a camera it shares.
+Index own_size_count(const std::vector<SensorPart>& parts, std::size_t part) {
+    const Sensor& sensor = *parts[part].sensor;
+    auto names = sensor.unknown_names();
+    names.resize(static_cast<std::size_t>(sensor.unknown_sizes().size()));
+    if (shared_camera(parts, part) == nullptr) return std::ssize(names);
+    return std::ranges::count_if(
+        names, [](const std::string& name) { return !name.starts_with("camera"); });
+}
+
 /// Whether what a part has on the flange is a camera that it shares.
 bool shares_targets(const std::vector<SensorPart>& parts, std::size_t part) {
     const CameraSensor* const camera = shared_camera(parts, part);
@@ -109,7 +119,7 @@ Targets all_targets(const std::vector<SensorPart>& parts) {
         const Sensor& sensor = *parts[part].sensor;
         const Targets& targets = sensor.targets();
         const VectorXd zero = VectorXd::Zero(static_cast<Index>(sensor.unknown_names().size()));
-        sizes += sensor.unknown_sizes().size();
+        sizes += own_size_count(parts, part);
         if (shares_targets(parts, part)) continue;
         for (Index j = 0; j < targets.count(); ++j) {
             positions.push_back(targets.position(j, zero));
@@ -151,7 +161,7 @@ CombinedSensor::CombinedSensor(std::vector<SensorPart> parts)
     : targets_((check_parts(parts), all_targets(parts))) {
     Index next_size = 0;
     Index next_target = 0;
-    for (const SensorPart& part : parts) next_target += part.sensor->unknown_sizes().size();
+    for (std::size_t k = 0; k < parts.size(); ++k) next_target += own_size_count(parts, k);
     Index next = next_target + targets_.unknown_count();
     Index points = 0;
     std::set<std::string> rows_taken;
@@ -512,13 +522,14 @@ std::vector<const AmountUnits*> CombinedSensor::unknown_units() const {
 }
 
 VectorXd CombinedSensor::unknown_sizes() const {
-    VectorXd sizes(0);
+    std::vector<double> sizes;
     for (const Part& part : parts_) {
         const VectorXd own = part.sensor().unknown_sizes();
-        sizes.conservativeResize(sizes.size() + own.size());
-        sizes.tail(own.size()) = own;
+        for (Index k = 0; k < own.size(); ++k) {
+            if (!part.is_shared[static_cast<std::size_t>(k)]) sizes.push_back(own[k]);
+        }
     }
-    return sizes;
+    return Eigen::Map<const VectorXd>(sizes.data(), std::ssize(sizes));
 }
 
 std::vector<NoiseNumber> CombinedSensor::noise_numbers() const {

@@ -20,7 +20,7 @@ std::string list_sizes(const std::vector<SizeDoubt>& sizes, bool has_values) {
     std::string words;
     for (const SizeDoubt& size : sizes) {
         words += (words.empty() ? "" : ", ") + size.parameter + " (";
-        if (has_values) words += detail::format_error(size.value, size.is_angle) + ", ";
+        if (has_values) words += detail::format_error(size.value, *size.units) + ", ";
         words += detail::format_short(size.times, 3) + " times)";
     }
     return words;

@@ -283,6 +283,40 @@ TEST(Camera, IsNotDeterminedByTurnsAboutOneAxis) {
 
 /// What its covariance says: of 40 small campaigns, the squares of the errors in standard
 /// deviations.
+/// Between a lens that is known and one that is not.
+TEST(Camera, FindsALensThatIsKnownWithDeviationsAsItsCovarianceSays) {
+    CameraSetup setup = unknown_lens(fixed_camera());
+    const auto deviations = [](const CameraSetup& camera) {
+        Campaign campaign = hand_eye(camera);
+        campaign.model_error = campaign.model_error_orientation = 0;
+        double squares = 0;
+        double count = 0;
+        VectorXd sigmas;
+        for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+            const Simulation simulated = simulate(
+                campaign, {.pose_count = 8, .repeats = 1, .truth_seed = seed, .seed = seed});
+            const Registration start = register_base_and_targets(campaign, simulated.measurements);
+            const Estimate estimate = identify(campaign, simulated.measurements, start.parameters);
+            const VectorXd errors = in_deviations(campaign, simulated.truth, estimate);
+            squares += errors.squaredNorm();
+            count += static_cast<double>(errors.size());
+            sigmas = standard_deviations(estimate);
+        }
+        EXPECT_NEAR(squares / count, 1, 0.35);
+        return sigmas;
+    };
+    const VectorXd unknown = deviations(setup);  // base, place, then the lens
+    setup.is_known.assign(9, true);
+    const VectorXd known = deviations(setup);
+    setup.deviations = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-3};
+    const VectorXd doubtful = deviations(setup);  // base, the lens, then the place
+    EXPECT_EQ(doubtful.size(), unknown.size());
+    EXPECT_GT(doubtful[2], 1.05 * known[2]);
+    EXPECT_LT(doubtful[2], 0.95 * unknown[2]);
+    EXPECT_LT(doubtful[6], 1e-3);
+    EXPECT_LT(doubtful[6], unknown[12]);
+}
+
 TEST(Camera, FindsHandEyeAndIntrinsicsAsItsCovarianceSays) {
     Campaign campaign = hand_eye(unknown_lens(fixed_camera()));
     campaign.model_error = campaign.model_error_orientation = 0;

@@ -58,6 +58,31 @@ TEST(ReadCamera, TakesWhatIsStated) {
     EXPECT_EQ(campaign.sensor->unknown_names()[6], "camera.fx");
 }
 
+TEST(ReadCamera, KnowsIntrinsicsWithDeviations) {
+    const std::string stated = "known: [cx, cy], deviations: {fx_px: 2, cx_px: 3, k1: 0.01}";
+    const Campaign campaign = with_camera(replaced(camera, "known: [cx, cy]", stated));
+    const CameraSetup& setup = setup_of(campaign);
+    EXPECT_EQ(setup.is_known,
+              (std::vector<bool>{true, false, true, true, true, false, false, false}));
+    EXPECT_EQ(setup.deviations, (std::vector<double>{2e-3, 0, 3e-3, 0, 0.01, 0, 0, 0}));
+    const auto names = campaign.sensor->unknown_names();
+    const std::vector<std::string> first{"camera.dfx", "camera.dcx", "camera.dk1", "camera.x"};
+    EXPECT_EQ(std::vector<std::string>(names.begin(), names.begin() + 4), first);
+    EXPECT_EQ(campaign.sensor->unknown_sizes(), Vector3d(2e-3, 3e-3, 0.01));
+    EXPECT_EQ(campaign.nominal.sensor.head<3>(), Vector3d::Zero());
+    const auto& sensor = dynamic_cast<const CameraSensor&>(*campaign.sensor);
+    VectorXd unknowns = campaign.nominal.sensor;
+    unknowns[0] = 1e-3;  // 1 px
+    EXPECT_NEAR(sensor.intrinsics(unknowns).fx, 1211, 1e-9);
+    const auto error = [&](const std::string& bad) {
+        return input_error_of([&] { with_camera(replaced(camera, "known: [cx, cy]", bad)); });
+    };
+    EXPECT_NE(error("deviations: {fx: 2}").find("is of no intrinsic parameter; did you mean fx_px"),
+              std::string::npos);
+    EXPECT_NE(error("deviations: {fx_px: 0}").find("must be above 0"), std::string::npos);
+    EXPECT_NE(error("deviations: {k3: 1}").find("is of no intrinsic parameter"), std::string::npos);
+}
+
 TEST(ReadCamera, LearnsSizesOnlyIfTold) {
     EXPECT_FALSE(with_camera(camera).spread.is_open);
     EXPECT_TRUE(with_camera(camera + "sizes: learned\n").spread.is_open);

@@ -65,6 +65,16 @@ inline CameraSetup camera_before_cube() {
     return setup;
 }
 
+/// A fixed camera of which some intrinsic parameters are known with a deviation, k2 is not known,
+/// and a further one like it.
+inline CameraSetup roughly_known_camera() {
+    CameraSetup setup = fixed_camera();
+    setup.deviations = {2e-3, 2e-3, 4e-3, 4e-3, 0.01, 0, 0, 0, 0};
+    setup.is_known = {true, true, true, true, true, false, true, true, true};
+    setup.others = {setup};
+    return setup;
+}
+
 /// Two cameras that are fixed to each other, one more whose intrinsic parameters are unknown.
 inline CameraSetup three_cameras() {
     CameraSetup setup = fixed_camera();
@@ -136,6 +146,14 @@ inline Campaign two_boards(const Campaign& from, const CameraSetup& setup) {
                          {Isometry3d::Identity(), beside}));
 }
 
+/// Like roughly_known_camera(), one camera on the flange.
+inline CameraSetup doubtful_on_flange() {
+    CameraSetup setup = roughly_known_camera();
+    setup.others.clear();
+    setup.is_on_flange = true;
+    return setup;
+}
+
 /// A tracker elsewhere, which sees one more target.
 inline Campaign second_tracker(const Campaign& from) {
     Campaign campaign =
@@ -178,6 +196,8 @@ inline std::vector<SensorCampaign> combined_campaigns(const Chain& robot) {
             {"poses and points", combined_campaign(poses, {points})},
             {"two boards before a camera on the flange", two_boards(points, camera_on_flange())},
             {"two boards on the flange", two_boards(points, fixed_camera())},
+            {"two boards before a camera known with deviations",
+             two_boards(points, doubtful_on_flange())},
             {"a fixed camera and one on the flange",
              combined_campaign(camera, {before_camera(points, camera_on_flange())})},
             {"tracker, camera roughly known and planes",
@@ -269,6 +289,8 @@ inline std::vector<SensorCampaign> campaigns_of_every_sensor(const Chain& robot)
     all.push_back({"two cameras on the flange", before_camera(points, two_on_flange)});
     all.push_back(
         {"camera before markers known roughly", before_camera(points, camera_before_cube())});
+    all.push_back({"camera whose intrinsics are known with deviations",
+                   before_camera(points, roughly_known_camera())});
     for (SensorCampaign& several : combined_campaigns(robot)) all.push_back(std::move(several));
     return all;
 }

@@ -57,6 +57,9 @@ struct SingleCamera {
     Intrinsics intrinsics;  ///< unknown ones: where a search begins; 0: from what is seen
     /// Which of Intrinsics::values() are known; empty: all.
     std::vector<bool> is_known;
+    /// Standard deviations of those that are known about their stated values, in the units of
+    /// Intrinsics::values(); 0: exact. Empty: all are. Errors above 0 are unknowns of known size.
+    std::vector<double> deviations{};
     double sigma = 0;               ///< standard deviation of u and of v, px
     std::optional<Vector2d> image;  ///< width and height, px; nothing: any place
 };
@@ -106,7 +109,8 @@ struct CameraSetup : SingleCamera {
 
 /// A camera that returns the places of n corners in its image, two numbers each, u and v, in
 /// thousands of pixels (pixel_units). Corners are seen or missed by themselves. Unknowns: errors of
-/// the corners' places, board.p1.x ...; the pose in the flange frame of what is on it (position and
+/// the corners' places, board.p1.x ..., and of intrinsic parameters known with a deviation,
+/// camera.dfx ...; the pose in the flange frame of what is on it (position and
 /// rotation vector, board.x to board.rz or camera.x to camera.rz); the unknown intrinsic
 /// parameters, camera.fx to camera.k6; of each further camera its pose in the first one's frame and
 /// the same, camera2.x to camera2.k6; board.scale. A target is a corner in one camera's image: all
@@ -152,6 +156,15 @@ class CameraSensor final : public Sensor {
     }
     /// Unknowns that are errors of corners' places, before all others: none, or three a corner.
     Index corner_error_count() const { return setup_.corner_sigma > 0 ? 3 * corner_count() : 0; }
+    /// Which of Intrinsics::values() have an error of known size, and the first of these unknowns.
+    const std::vector<Index>& doubtful_intrinsics(Index camera) const {
+        return own_[static_cast<std::size_t>(camera)].doubtful;
+    }
+    Index first_intrinsic_error(Index camera) const {
+        return own_[static_cast<std::size_t>(camera)].first_error;
+    }
+    /// Of the pose of what is on the flange, where it is unknown.
+    Index first_of_place() const { return unknown_sizes().size(); }
     /// The board as stated in the first camera's frame.
     Isometry3d camera_from_board(const Isometry3d& world_from_flange,
                                  const VectorXd& unknowns) const;
@@ -178,9 +191,7 @@ class CameraSensor final : public Sensor {
     std::vector<std::string> unknown_names() const override;
     std::vector<bool> unknown_is_angle() const override;
     std::vector<const AmountUnits*> unknown_units() const override;
-    VectorXd unknown_sizes() const override {
-        return VectorXd::Constant(corner_error_count(), setup_.corner_sigma);
-    }
+    VectorXd unknown_sizes() const override { return sizes_; }
     using Sensor::covariance;
     using Sensor::predict;
     void predict(const Isometry3d& world_from_flange, const VectorXd& unknowns,
@@ -210,7 +221,7 @@ class CameraSensor final : public Sensor {
 
     /// Whether the board's corners are exactly where they are stated. Views are compared with each
     /// other only then: few corners that are not often find no good pose of the board.
-    bool has_exact_corners() const { return unknown_sizes().size() == 0; }
+    bool has_exact_corners() const { return corner_error_count() == 0; }
 
   private:
     bool has_unknown_place() const { return !setup_.known_place; }
@@ -221,6 +232,8 @@ class CameraSensor final : public Sensor {
     struct OwnUnknowns {
         Index first = 0;
         std::vector<Index> intrinsics;  ///< indices among Intrinsics::values()
+        Index first_error = 0;
+        std::vector<Index> doubtful{};  ///< likewise, of those with an error of known size
         double widest = 1e3;
     };
 
@@ -228,6 +241,7 @@ class CameraSensor final : public Sensor {
     Targets origin_;                  ///< where what is on the flange has its origin
     std::optional<Vector3d> normal_;  ///< away from the front of a plane board, in its frame
     std::vector<OwnUnknowns> own_;    ///< one for each camera
+    VectorXd sizes_;                  ///< unknown_sizes()
     Index unknown_count_ = 0;
 };
 
@@ -235,5 +249,7 @@ class CameraSensor final : public Sensor {
 Index first_corner(const Sensor& sensor);
 /// How many cameras a sensor has: 1 if it is none.
 Index camera_count(const Sensor& sensor);
+/// CameraSensor::has_exact_corners(); of another sensor whether no unknown has a known size.
+bool has_exact_corners(const Sensor& sensor);
 
 }  // namespace posewise

@@ -285,8 +285,8 @@ std::string describe_places(const std::vector<PlaceDoubt>& places);
 struct SizeDoubt {
     std::string parameter;
     double times = 0;  ///< multiple of the expected size
-    double value = 0;  ///< m or rad
-    bool is_angle = false;
+    double value = 0;  ///< in SI units, or as its units have it
+    const AmountUnits* units = &length_units;
     bool is_term = false;  ///< depends on the configuration: no nominal value contains it
 };
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -80,11 +81,30 @@ CameraFile read_stated(const YamlValue& value, const YamlMap& map, Index camera)
     const auto file = map.find("file");
     if (!file) return read_numbers(map);
     for (const YamlEntry& entry : value.entries()) {
-        if (entry.key == "file" || entry.key == "known") continue;
+        const bool is_own = entry.key == "known" || entry.key == "deviations";
+        if (entry.key == "file" || is_own) continue;
         throw entry.value.error("is stated beside 'file'; must be left out, the file has it");
     }
     const std::filesystem::path campaign(value.location().path);
     return read_camera_file((campaign.parent_path() / file->text()).string(), *file, camera);
+}
+
+/// By names: "fx_px", ..., "k1"; these are known then.
+void read_deviations(const YamlValue& value, SingleCamera& setup) {
+    std::vector<std::string> names = setup.intrinsics.names();
+    for (std::size_t k = 0; k < 4; ++k) names[k] += "_px";
+    setup.deviations.assign(names.size(), 0);
+    for (const YamlEntry& entry : value.entries()) {
+        const auto found = std::ranges::find(names, entry.key);
+        if (found == names.end()) {
+            throw entry.value.error("is of no intrinsic parameter; " + suggest(entry.key, names));
+        }
+        const auto k = static_cast<std::size_t>(found - names.begin());
+        const double deviation = entry.value.number();
+        if (!(deviation > 0)) throw entry.value.error("must be above 0");
+        setup.is_known[k] = true;
+        setup.deviations[k] = k < 4 ? deviation / px_per_kpx : deviation;
+    }
 }
 
 /// `number`: of the camera, from 0.
@@ -95,6 +115,9 @@ void read_intrinsics(const YamlValue& value, Index number, SingleCamera& setup) 
     const auto names = setup.intrinsics.names();
     const auto known = map.find("known");
     setup.is_known = known ? read_known(*known, names) : std::vector<bool>(names.size(), true);
+    if (const auto deviations = map.find("deviations")) {
+        read_deviations(*deviations, setup);
+    }
     for (std::size_t k = 0; k < 2; ++k) {
         const double focal = k == 0 ? setup.intrinsics.fx : setup.intrinsics.fy;
         if (setup.is_known[k] && !(focal > 0)) {

@@ -274,6 +274,10 @@ const YamlKeys camera{
          "exact as stated: `true`, `false`, or the names of those that are: fx, fy, cx, cy, k1, "
          "...",
          "`true`", "`false`"},
+        {"deviations", "intrinsics",
+         "standard deviations about their stated values of those that are known so well, by name "
+         "(fx_px, fy_px, cx_px, cy_px, k1, ...): their errors are found with the rest",
+         "none: they are exact, or not known", "`{fx_px: 2, fy_px: 2, cx_px: 4, cy_px: 4}`"},
         {"model", "distortion",
          "`none`, `brown_conrady` (k1 k2 p1 p2, k3, k4 k5 k6) or `fisheye` (k1 k2 k3 k4), with "
          "OpenCV's formulas",

@@ -38,7 +38,7 @@ Json sizes_to_json(const std::vector<SizeDoubt>& sizes) {
     Json json = Json::array();
     for (const SizeDoubt& size : sizes) {
         json.push_back({{"parameter", size.parameter},
-                        {"value" + error_suffix(size.is_angle), mm_per_m * size.value},
+                        {"value" + error_suffix(*size.units), mm_per_m * size.value},
                         {"times_expected", size.times}});
     }
     return json;

@@ -22,7 +22,7 @@ std::optional<OnFlange> find_on_flange(const Campaign& campaign, const VectorXd&
     const Sensor* const sensor = campaign.sensor.get();
     if (const auto* const camera = dynamic_cast<const CameraSensor*>(sensor)) {
         OnFlange found{camera->setup().is_on_flange, camera->place(unknowns), std::nullopt};
-        if (!camera->setup().known_place) found.first_unknown = camera->corner_error_count();
+        if (!camera->setup().known_place) found.first_unknown = camera->first_of_place();
         return found;
     }
     const auto* const poses = dynamic_cast<const PoseSensor*>(sensor);

@@ -80,17 +80,18 @@ std::vector<SizeDoubt> find_size_doubts(const Campaign& campaign, const Estimate
     for (Index k = 0; k < times.size(); ++k) {
         if (times[k] <= (campaign.spread.is_prior ? doubtful_under_prior : doubtful_size)) continue;
         doubts.push_back({estimate.names[static_cast<std::size_t>(robot_begin + k)], times[k],
-                          errors[k], campaign.robot.parameter_element(k).motion == Motion::Rotation,
+                          errors[k], &units_of(campaign.robot.parameter_element(k).motion),
                           campaign.robot.parameter_term(k) != nullptr});
     }
     const VectorXd of_sensor = campaign.sensor->unknown_sizes();
+    const auto units = campaign.sensor->unknown_units();
     const Index sensor_begin = robot_begin + errors.size();
     for (Index k = 0; k < of_sensor.size(); ++k) {
         const double error = estimate.parameters.sensor[k];
         const double ratio = std::abs(error) / of_sensor[k];
         if (ratio <= doubtful_under_prior) continue;
-        doubts.push_back(
-            {estimate.names[static_cast<std::size_t>(sensor_begin + k)], ratio, error, false});
+        doubts.push_back({estimate.names[static_cast<std::size_t>(sensor_begin + k)], ratio, error,
+                          units[static_cast<std::size_t>(k)]});
     }
     return doubts;
 }
@@ -105,7 +106,8 @@ std::vector<SizeDoubt> find_class_doubts(const Campaign& campaign, const Estimat
     for (std::size_t k = 0; k < learned.size(); ++k) {
         const double times = learned[k].size / expected[k].size;
         if (times <= doubtful) continue;
-        doubts.push_back({"spread." + learned[k].key, times, learned[k].size, learned[k].is_angle,
+        doubts.push_back({"spread." + learned[k].key, times, learned[k].size,
+                          &units_of(learned[k].is_angle),
                           campaign.robot.parameter_term(learned[k].members.front()) != nullptr});
     }
     return doubts;
