@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 
@@ -205,6 +206,66 @@ TEST(ReadBoard, TakesAFileWithTheCampaignsOwnKeys) {
     EXPECT_EQ(setup.corners, before("{columns: 3, rows: 2, square_mm: 25}").corners);
     EXPECT_EQ(setup.first_corner, 0);
     EXPECT_EQ(before("{file: board.yaml, first_point: 1}", content).first_corner, 1);
+}
+
+const std::string settings_xml =
+    "<?xml version=\"1.0\"?>\n<opencv_storage>\n<Settings>\n  <BoardSize_Width> 9"
+    "</BoardSize_Width>\n  <BoardSize_Height>6</BoardSize_Height>\n  <Square_Size>50</Square_Size>"
+    "\n  <Calibrate_Pattern>\"CHESSBOARD\"</Calibrate_Pattern>\n</Settings>\n</opencv_storage>\n";
+const std::string settings_yaml =
+    "%YAML:1.0\n---\nSettings:\n   BoardSize_Width: 9\n   BoardSize_Height: 6\n"
+    "   Square_Size: 5.\n   Calibrate_Pattern: \"CHESSBOARD\"\n";
+const std::string result_yaml =
+    "%YAML:1.0\n---\ncalibration_time: \"Thu 01 Jan 2026\"\nboard_width: 9\nboard_height: 6\n"
+    "square_size: 5.0000000745058060e-02\ncamera_matrix: !!opencv-matrix\n   rows: 1\n   cols: 1\n"
+    "   dt: d\n   data: [ 1. ]\n";
+
+/// In mm, cm and m, which they do not say.
+TEST(ReadBoard, TakesWhatOpenCvWritesWithItsUnit) {
+    for (const std::string& content : {settings_xml, settings_yaml, result_yaml}) {
+        const CameraSetup setup = before("{file: board.yaml, square_mm: 50}", content);
+        EXPECT_EQ(setup.pattern.kind, BoardPattern::Kind::Chessboard);
+        EXPECT_EQ(setup.first_corner, 1);
+        expect_places(setup, 54, {{0, {0, 0, 0}}, {10, {0.05, 0.05, 0}}, {53, {0.4, 0.25, 0}}});
+    }
+}
+
+TEST(ReadBoard, SaysWhatIsWrongInFilesOfOpenCv) {
+    const auto expect_error = [](const std::string& content, const std::string& message,
+                                 const std::string& board = "{file: board.yaml, square_mm: 50}") {
+        const std::string error = input_error_of([&] { before(board, content); });
+        EXPECT_NE(error.find(message), std::string::npos) << error;
+    };
+    expect_error(settings_xml, "squares of 50, in a unit that OpenCV does not write",
+                 "{file: board.yaml}");
+    expect_error(settings_yaml, "the file says 5; must be that in mm, cm or m",
+                 "{file: board.yaml, square_mm: 25}");
+    for (const std::string& settings : {settings_xml, settings_yaml}) {
+        expect_error(replaced(settings, "CHESSBOARD", "CIRCLES_GRID"), "must be CHESSBOARD");
+        expect_error(replaced(settings, settings == settings_xml ? " 9" : " 9\n", " 1\n"),
+                     "must be from 2");
+    }
+    expect_error(replaced(settings_xml, ">50<", ">none<"), "has no Square_Size");
+    expect_error(replaced(settings_xml, ">6<", ">6.5<"), "has no BoardSize_Height");
+    expect_error(replaced(settings_yaml, "   Square_Size: 5.\n", ""), "no key 'Square_Size'");
+    expect_error("<a><b/></a>", "BoardSize_Width");
+    expect_error("<a><b>", "board.yaml:1");
+    expect_error("board: {columns: 3, rows: 2, square_mm: 25}\n", "must be left out");
+}
+
+/// A named pipe that nobody writes to would be waited for.
+TEST(ReadBoard, WaitsForNoPipe) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(::mkfifo(folder.path("pipe").c_str(), 0600), 0);
+    const std::string arm =
+        two_joint_arm + "sensor: {kind: camera, camera: fixed, sigma_px: 0.3,\n";
+    for (const std::string pipe :
+         {"  intrinsics: {known: false}, board: {file: pipe}}\n",
+          "  intrinsics: {file: pipe}, board: {columns: 3, rows: 2, square_mm: 25}}\n"}) {
+        const std::string path = folder.write("c.yaml", arm + pipe);
+        const std::string error = input_error_of([&] { read_campaign(path); });
+        EXPECT_NE(error.find("is no regular file"), std::string::npos) << error;
+    }
 }
 
 TEST(ReadBoard, SaysWhatIsWrong) {

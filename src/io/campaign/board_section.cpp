@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <filesystem>
+#include <cctype>
+#include <cmath>
 
+#include "camera_file.hpp"
 #include "campaign_sections.hpp"
-#include "io/format/atomic_file.hpp"
 #include "io/format/text.hpp"
+#include "io/format/xml_document.hpp"
 #include "keys.hpp"
 
 namespace posewise::detail {
@@ -213,20 +215,120 @@ void read_stated(const YamlValue& value, CameraSetup& setup) {
     read_pattern(value, name, setup);
 }
 
-/// A file of Kalibr, or one whose key `board` is as in a campaign.
-void read_file_of(const YamlValue& asked_by, CameraSetup& setup) {
-    const std::filesystem::path campaign(asked_by.location().path);
-    const std::string path = (campaign.parent_path() / asked_by.text()).string();
-    std::string content;
-    try {
-        content = read_file(path);
-    } catch (const InputError& e) {
-        throw asked_by.error(fmt::format("cannot be read: {}", e.what()));
+/// What OpenCV's programs say of a board: counts of inner corners, and a size without a unit.
+struct OpencvBoard {
+    std::uint64_t columns = 0, rows = 0;
+    double square = 0;
+    std::string pattern = "CHESSBOARD";
+};
+
+/// What went before a calibration, or what it wrote.
+constexpr std::array<std::array<const char*, 3>, 2> opencv_keys{
+    {{"BoardSize_Width", "BoardSize_Height", "Square_Size"},
+     {"board_width", "board_height", "square_size"}}};
+constexpr const char* opencv_pattern = "Calibrate_Pattern";
+
+/// Nothing: the file says nothing of a board.
+std::optional<OpencvBoard> find_opencv_board(const YamlValue& file) {
+    const YamlValue settings = find_of(file, "Settings").value_or(file);
+    for (const auto& [width, height, square] : opencv_keys) {
+        const auto columns = find_of(settings, width);
+        if (!columns) continue;
+        const char* const why = "which the board needs";
+        OpencvBoard board{columns->natural_number(),
+                          require_of(settings, height, why).natural_number(),
+                          require_of(settings, square, why).number()};
+        if (const auto pattern = find_of(settings, opencv_pattern)) board.pattern = pattern->text();
+        return board;
     }
-    const YamlValue file = parse_yaml(content, path);
+    return std::nullopt;
+}
+
+/// The same of XML, whose texts may be in quotation marks.
+OpencvBoard read_opencv_xml(const std::string& path) {
+    const XmlDocument document(path);
+    pugi::xml_node settings = document.root();
+    if (const auto nested = settings.child("Settings")) settings = nested;
+    const auto text_of = [&](const char* key) {
+        std::string text = settings.child_value(key);
+        std::erase_if(text, [](char c) { return c == '"' || std::isspace(c) != 0; });
+        return text;
+    };
+    for (const auto& keys : opencv_keys) {
+        if (!settings.child(keys[0])) continue;
+        std::array<double, 3> numbers{};
+        for (std::size_t k = 0; k < keys.size(); ++k) {
+            const std::string text = text_of(keys[k]);
+            const ParsedNumber number = parse_number(text);
+            const bool is_counted = k == 2 || number.value == std::floor(number.value);
+            if (!number.ok() || !(number.value > 0 && number.value <= 1e6) || !is_counted) {
+                throw document.error(settings, fmt::format("has no {}, a {} above 0", keys[k],
+                                                           k < 2 ? "whole number" : "number"));
+            }
+            numbers[k] = number.value;
+        }
+        OpencvBoard board{static_cast<std::uint64_t>(numbers[0]),
+                          static_cast<std::uint64_t>(numbers[1]), numbers[2]};
+        if (settings.child(opencv_pattern)) board.pattern = text_of(opencv_pattern);
+        return board;
+    }
+    throw document.error(settings, "has no BoardSize_Width or board_width, as OpenCV's have");
+}
+
+/// `value`: the board in the campaign, which says in what unit its size is.
+void read_opencv(const YamlValue& value, const YamlValue& asked_by, const OpencvBoard& found,
+                 CameraSetup& setup) {
+    if (found.pattern != "CHESSBOARD") {
+        throw asked_by.error("is of a board " + quote(found.pattern) +
+                             "; must be CHESSBOARD, state others by columns, rows and points_mm");
+    }
+    for (const std::uint64_t count : {found.columns, found.rows}) {
+        if (count >= 2 && count <= static_cast<std::uint64_t>(most_corners)) continue;
+        throw asked_by.error(fmt::format("has {} corners in a row or column; must be from 2 to {}",
+                                         count, most_corners));
+    }
+    const auto stated = YamlMap(value, keys::board, "file").find_measure("square");
+    if (!stated) {
+        throw asked_by.error(fmt::format(
+            "has squares of {:g}, in a unit that OpenCV does not write; must state square_mm, too",
+            found.square));
+    }
+    const double square = read_positive(*stated, false, longest);
+    const auto agrees = [&](double unit) {
+        return std::abs(found.square * unit - square) <= 1e-6 * square;
+    };
+    if (!agrees(1) && !agrees(1e-2) && !agrees(1e-3)) {
+        throw stated->value.error(
+            fmt::format("is {}, the file says {:g}; must be that in mm, cm or m",
+                        quote(stated->value.text()), found.square));
+    }
+    setup.pattern.kind = Pattern::Chessboard;
+    setup.pattern.columns = static_cast<Index>(found.columns);
+    setup.pattern.rows = static_cast<Index>(found.rows);
+    setup.corners =
+        grid(value, evenly(setup.pattern.columns, square), evenly(setup.pattern.rows, square));
+}
+
+/// A file of Kalibr or of OpenCV, or one whose key `board` is as in a campaign.
+void read_file_of(const YamlValue& value, const YamlValue& asked_by, CameraSetup& setup) {
+    const NamedFile named = read_named_file(asked_by);
+    if (named.content.starts_with('<')) {
+        return read_opencv(value, asked_by, read_opencv_xml(named.path), setup);
+    }
+    const YamlValue file = parse_opencv_yaml(named);
+    if (const auto found = find_opencv_board(file)) {
+        return read_opencv(value, asked_by, *found, setup);
+    }
+    if (const auto square = YamlMap(value, keys::board, "file").find_measure("square")) {
+        throw square->value.error("is stated beside a file that has it; must be left out");
+    }
     if (const auto type = find_of(file, "target_type")) return read_kalibr(file, *type, setup);
     const auto board = find_of(file, "board");
-    if (!board) throw file.error("has neither target_type, as Kalibr's have, nor board");
+    if (!board) {
+        throw file.error(
+            "has neither target_type, as Kalibr's have, nor BoardSize_Width, as OpenCV's, nor "
+            "board");
+    }
     if (find_of(*board, "file")) throw board->error("names a file; must describe the board itself");
     read_stated(*board, setup);
     read_corners(YamlMap(*board, keys::board), setup);
@@ -237,7 +339,7 @@ void read_file_of(const YamlValue& asked_by, CameraSetup& setup) {
 void read_board(const YamlValue& value, CameraSetup& setup) {
     if (const auto file = find_of(value, "file")) {
         const YamlMap allowed(value, keys::board, "file");
-        read_file_of(*file, setup);
+        read_file_of(value, *file, setup);
     } else {
         read_stated(value, setup);
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "io/format/atomic_file.hpp"
 #include "io/format/text.hpp"
@@ -115,14 +116,27 @@ std::string without_opencv_words(std::string content) {
 
 }  // namespace
 
-CameraFile read_camera_file(const std::string& path, const YamlValue& asked_by, Index camera) {
-    std::string content;
+NamedFile read_named_file(const YamlValue& asked_by) {
+    const std::filesystem::path campaign(asked_by.location().path);
+    const std::filesystem::path path = campaign.parent_path() / asked_by.text();
+    std::error_code error;
+    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+        throw asked_by.error(
+            fmt::format("cannot be read: {} is no regular file; must be a file", path.string()));
+    }
     try {
-        content = read_file(path);
+        return {path.string(), read_file(path.string())};
     } catch (const InputError& e) {
         throw asked_by.error(fmt::format("cannot be read: {}", e.what()));
     }
-    const YamlValue file = parse_yaml(without_opencv_words(std::move(content)), path);
+}
+
+YamlValue parse_opencv_yaml(NamedFile file) {
+    return parse_yaml(without_opencv_words(std::move(file.content)), file.path);
+}
+
+CameraFile read_camera_file(const YamlValue& asked_by, Index camera) {
+    const YamlValue file = parse_opencv_yaml(read_named_file(asked_by));
     // A file may hold one camera or several.
     const auto kalibr = find_of(file, fmt::format("cam{}", camera));
     const auto only = find_of(file, "cam0");

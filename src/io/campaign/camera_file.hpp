@@ -16,8 +16,18 @@ struct CameraFile {
 
 /// A YAML file of OpenCV's FileStorage or of ROS (camera_matrix, distortion_coefficients or
 /// distortion_coeffs, image_width), or of Kalibr (cam0: intrinsics, distortion_coeffs). Throws
-/// InputError with its place; `asked_by` names it where it cannot be read. Of a file that holds
+/// InputError with its place; `asked_by` names it. Of a file that holds
 /// several (camera2_matrix, as write_camera() has them, or cam1) the one numbered `camera`, from 0.
-CameraFile read_camera_file(const std::string& path, const YamlValue& asked_by, Index camera);
+CameraFile read_camera_file(const YamlValue& asked_by, Index camera);
+
+/// A file that a campaign names, relative to it. Throws InputError at `asked_by` where there is
+/// none that can be read, and for what is no regular file: a named pipe would be waited for.
+struct NamedFile {
+    std::string path, content;
+};
+NamedFile read_named_file(const YamlValue& asked_by);
+
+/// The YAML of a file of OpenCV's FileStorage, too.
+YamlValue parse_opencv_yaml(NamedFile file);
 
 }  // namespace posewise::detail

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <set>
 
 #include "board_section.hpp"
@@ -85,8 +84,7 @@ CameraFile read_stated(const YamlValue& value, const YamlMap& map, Index camera)
         if (entry.key == "file" || is_own) continue;
         throw entry.value.error("is stated beside 'file'; must be left out, the file has it");
     }
-    const std::filesystem::path campaign(value.location().path);
-    return read_camera_file((campaign.parent_path() / file->text()).string(), *file, camera);
+    return read_camera_file(*file, camera);
 }
 
 /// By names: "fx_px", ..., "k1"; these are known then.

@@ -312,7 +312,9 @@ const YamlKeys board{
          "AprilGrid tags",
          "required", "`9`"},
         {"rows", "chessboard, charuco and aprilgrid", "as many rows of these", "required", "`6`"},
-        {"square_mm", "chessboard and charuco", "side of a square", "required", "`25`"},
+        {"square_mm", "chessboard, charuco and file",
+         "side of a square; with a `file` of OpenCV, which has no unit, the same in mm",
+         "required, not of other files", "`25`"},
         {"marker_mm", "charuco", "side of a marker, with its black border", "required", "`18`"},
         {"dictionary", "charuco", "of the markers, as OpenCV names it", "`DICT_4X4_50`",
          "`DICT_5X5_100`"},
@@ -326,9 +328,9 @@ const YamlKeys board{
         {"points_mm", "points", "places of its corners or markers, not necessarily in a plane",
          "required", "`[[0, 0, 0], [50, 0, 0], [50, 50, 0], [0, 50, 0]]`"},
         {"file", "file, instead of these",
-         "a target file of Kalibr (`target_type: aprilgrid` or `checkerboard`), or a YAML file "
-         "with "
-         "these keys under `board`; relative to the campaign file",
+         "a target file of Kalibr (`target_type: aprilgrid` or `checkerboard`), settings or "
+         "results of OpenCV's calibration (`BoardSize_Width` or `board_width`, YAML or XML), or a "
+         "YAML file with these keys under `board`; relative to the campaign file",
          "none", "`board.yaml`"},
         {"sigma_mm", "",
          "standard deviation of its corners' or markers' places, each coordinate about the stated "
