@@ -281,6 +281,9 @@ TEST(ReadBoard, SaysWhatIsWrong) {
     expect_error("{columns: 50, rows: 50, square_mm: 3}", "has 2500 corners; must have at most");
     expect_error(replaced(charuco, "columns: 5", "columns: 2"), "must be from 3");
     expect_error(replaced(charuco, "marker_mm: 22", "marker_mm: 30"), "smaller than the squares");
+    expect_error(replaced(charuco, "marker_mm: 22", "marker_mm: 28"),
+                 "marker_mm is '28' of squares of 30; must be at most 0.9");
+    EXPECT_EQ(before(replaced(charuco, "marker_mm: 22", "marker_mm: 27")).pattern.marker, 0.027);
     expect_error(replaced(charuco, "22}", "22, dictionary: 4X4}"), "such as DICT_4X4_50");
     expect_error(replaced(charuco, "22}", "22, spacing: 0.3}"), "unknown key 'spacing'");
     expect_error(replaced(charuco, "22}", "22, legacy: true}"), "odd number of rows");

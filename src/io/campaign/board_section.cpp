@@ -113,6 +113,14 @@ void read_squares(const YamlValue& value, const YamlMap& board, CameraSetup& set
         throw marker.value.error("is " + quote(marker.value.text()) +
                                  "; must be smaller than the squares");
     }
+    constexpr double most_of_square = 0.9;  // else the squares' corners have no white about them
+    if (pattern.marker > most_of_square * square * (1 + 1e-9)) {
+        throw marker.value.error(
+            fmt::format("is {} of squares of {}; must be at most 0.9 of them: larger markers touch "
+                        "the corners, "
+                        "which are then not found",
+                        quote(marker.value.text()), stated.value.text()));
+    }
     const auto dictionary = board.find("dictionary");
     pattern.dictionary = dictionary ? dictionary->text() : "DICT_4X4_50";
     if (!pattern.dictionary.starts_with("DICT_")) {
