@@ -181,10 +181,8 @@ std::vector<Answer> complete(const Planning& planning, const std::string& accura
     add("measured", "Measured already", describe_together(planning.plan.request.sources));
     const Sensor& sensor = *planning.campaign.sensor;
     add("image", "Where in the image",
-        detail::describe_images(
-            "corners of the board are expected to cover ",
-            find_image_coverage(sensor, expected_readings(planning.campaign, planning.plan)),
-            sensor));
+        detail::describe_images("corners of the board are expected to cover ", planning.images,
+                                sensor));
     return answers;
 }
 

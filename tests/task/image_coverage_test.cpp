@@ -95,6 +95,22 @@ TEST(ExpectedReadings, AreTheCornersThatEachPoseShows) {
     EXPECT_EQ(expected_readings(campaign, {}).configuration_count(), 0);
 }
 
+TEST(FindImageCoverage, IsKeptWithAPlan) {
+    CameraSetup setup = fixed_camera();
+    setup.view.least_corners = 6;
+    const Campaign campaign = before_camera(tracked_campaign(fanuc()), setup);
+    PlanningOptions options;
+    options.pose_count = 12;
+    options.pool_count = 2000;
+    options.workspace_count = 20;
+    const Planning planning = make_plan(campaign, options);
+    ASSERT_EQ(planning.images.size(), 1U);
+    const auto again =
+        find_image_coverage(*campaign.sensor, expected_readings(campaign, planning.plan));
+    EXPECT_EQ(planning.images[0].counts, again[0].counts);
+    EXPECT_EQ(judge_again(planning.plan, campaign, options).images[0].counts, again[0].counts);
+}
+
 TEST(FindImageCoverage, IsOfWhatWasCalibratedWith) {
     const Campaign campaign = before_camera(tracked_campaign(fanuc()), fixed_camera());
     const Measurements measured =

@@ -10,6 +10,7 @@
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/model/controller.hpp"
 #include "posewise/planner/planning.hpp"
+#include "posewise/task/answers.hpp"
 #include "posewise/task/choice.hpp"
 #include "posewise/task/judgement.hpp"
 #include "posewise/task/plan.hpp"
@@ -62,6 +63,7 @@ struct Planning {
     std::vector<DropOut> drop_outs;         ///< the poses that hurt most, missing one after another
     std::optional<ErrorsLeftOut> left_out;  ///< nothing: none that matter, or an estimate tells
     std::optional<RobotError> robot_alone{};  ///< over the workspace, where pixels are measured
+    std::vector<ImageCoverage> images{};      ///< of expected_readings(), one a camera
 };
 
 /// Proposes configurations to measure in the campaign's cell: draws a pool, chooses from it,

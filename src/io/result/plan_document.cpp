@@ -161,9 +161,9 @@ void add_judgement(Json& document, const Planning& planning) {
     document["budget"] = budget_to_json(planning.budget);
     document["pose_values"] = drop_outs_to_json(planning, planning.without_each, true);
     document["drop_outs"] = drop_outs_to_json(planning, planning.drop_outs, false);
-    const auto images = find_image_coverage(*planning.campaign.sensor,
-                                            expected_readings(planning.campaign, planning.plan));
-    if (!images.empty()) document["images"] = detail::images_to_json(images);
+    if (!planning.images.empty()) {
+        document["images"] = detail::images_to_json(planning.images);
+    }
 }
 
 void add_counts(Json& document, const Planning& planning) {

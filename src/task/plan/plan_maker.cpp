@@ -12,6 +12,7 @@
 #include "pool_choices.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/task/calibration.hpp"
 #include "task/calibration/expected_distance.hpp"
 #include "task/calibration/inputs.hpp"
 #include "verification_poses.hpp"
@@ -134,6 +135,10 @@ void conclude(Planning& planning, const PlanningProblem& problem, Index drop_out
     planning.without_each = drop_each(prediction, blocks, planning.information);
     planning.drop_outs = drop_worst(prediction, blocks, drop_out_count, left);
     planning.robot_alone = predict_robot_alone(problem, planning.information);
+    if (campaign.sensor->has_pixels()) {
+        planning.images =
+            find_image_coverage(*campaign.sensor, expected_readings(campaign, planning.plan));
+    }
     const CampaignTime time =
         campaign_time(problem, planning.tour.time, seen_at(poses, campaign.sensor->target_count()));
     planning.plan.duration = time.total;
