@@ -64,10 +64,13 @@ SelectOptions select_options(const DesignSpace& space, const RowMatrixXd& pool,
     select.proof = space.is_pool_only ? 0.01 : 0;
     select.gap = 1e-2;
     if (space.least_joint_distance > 0) {
-        // Selection measures by Euclid: at distance d sqrt(n) one joint differs by d at least.
+        // Selection measures by Euclid: at distance d sqrt(n) one of n joints that move differs by
+        // d at least.
         select.positions = pool;
+        const Index moving =
+            (pool.colwise().maxCoeff().array() > pool.colwise().minCoeff().array()).count();
         select.least_distance =
-            space.least_joint_distance * std::sqrt(static_cast<double>(pool.cols()));
+            space.least_joint_distance * std::sqrt(static_cast<double>(std::max<Index>(1, moving)));
         const RowMatrixXd& held = options.held.configurations;
         for (Index i = 0; i < pool.rows(); ++i) {
             if (!is_apart(held, pool.row(i), space.least_joint_distance)) {

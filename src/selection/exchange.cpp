@@ -40,9 +40,22 @@ ScoredPoses make_choice(const SearchProblem& problem, std::vector<Index> poses) 
     return {std::move(poses), score};
 }
 
+/// The poses that are farthest from the middle of all: one there would keep several others off.
+std::vector<Index> take_outermost(const SearchProblem& problem) {
+    const RowMatrixXd& positions = problem.options.positions;
+    const Eigen::RowVectorXd middle = positions.colwise().mean();
+    return detail::take_in_order(
+        problem, by_decreasing((positions.rowwise() - middle).rowwise().squaredNorm()));
+}
+
 /// The poses of the largest relaxed weights.
 ScoredPoses make_first_start(const SearchProblem& problem, const Relaxation& relaxation) {
     std::vector<Index> poses = detail::take_in_order(problem, by_decreasing(relaxation.weights));
+    if (static_cast<Index>(poses.size()) < problem.options.pose_count &&
+        problem.options.least_distance > 0) {
+        std::vector<Index> outermost = take_outermost(problem);
+        if (outermost.size() > poses.size()) poses = std::move(outermost);
+    }
     if (static_cast<Index>(poses.size()) < problem.options.pose_count) {
         const bool is_one = poses.size() == 1;
         throw InputError(fmt::format(

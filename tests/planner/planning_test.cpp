@@ -350,5 +350,27 @@ TEST(SelectPoses, AgreesWhateverTheSeedWhereManyStartsEndBelowTheBest) {
     EXPECT_NEAR(select_poses(candidates, options).value, first.value, 1e-9 * first.value);
 }
 
+/// Where one joint of six moves, it keeps poses apart alone.
+TEST(PlanPoses, KeepsPosesApartByTheJointsThatMove) {
+    const Scene scene(200);
+    RowMatrixXd pool = scene.pool;
+    for (Index joint = 1; joint < pool.cols(); ++joint) pool.col(joint).setConstant(0.1);
+    const double range = pool.col(0).maxCoeff() - pool.col(0).minCoeff();
+    DesignSpace space = scene.space;
+    space.least_joint_distance = range / 16;
+    PlanOptions options = scene.options(Criterion::D, 10, 1);
+    options.held.rows = MatrixXd::Identity(space.parameter_count, space.parameter_count);
+    const PlannedPoses planned =
+        plan_poses(space, pool, make_blocks(scene.campaign, scene.campaign.nominal, pool), options);
+    ASSERT_EQ(planned.configurations.rows(), 10);
+    for (Index i = 0; i < 10; ++i) {
+        for (Index k = 0; k < i; ++k) {
+            EXPECT_GE(joint_distance(planned.configurations.row(i).transpose(),
+                                     planned.configurations.row(k).transpose()),
+                      space.least_joint_distance - 1e-9);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace posewise

@@ -135,6 +135,21 @@ TEST(SelectByExchange, HonoursEveryLimit) {
     }
 }
 
+/// Nine in three by three, a step apart: a pose in the middle leaves room for no other one.
+TEST(SelectByExchange, KeepsApartWhatFitsOnlyInTheCorners) {
+    Blocks candidates = test::random_blocks(9, 2, 3, 7);
+    candidates.matrix.middleRows(8, 2) *= 100;  // the best pose by far
+    SelectOptions apart = make_options(Criterion::D, 4);
+    apart.positions.resize(9, 2);
+    for (Index k = 0; k < 9; ++k) {
+        apart.positions.row(k) << static_cast<double>(k % 3), static_cast<double>(k / 3);
+    }
+    apart.least_distance = 1.9;
+    EXPECT_EQ(select_poses(candidates, apart).poses, (std::vector<Index>{0, 2, 6, 8}));
+    apart.pose_count = 5;
+    expect_refusal(candidates, apart, "only 4");
+}
+
 TEST(SelectByExchange, AddsToWhatIsHeld) {
     const Blocks candidates = test::random_blocks(12, 2, 9, 8);
     for (const Criterion criterion : all_criteria) {
