@@ -55,7 +55,6 @@ _keywords = {
     "earlier": "estimate",
     "earlier.has_new_base": "moved",
     "earlier.is_prior": "as_prior",
-    "is_focused_on_robot": "focus",
     "least_distance": "least_distance_deg",
     "measured": "measurements",
     "pool_count": "pool",

@@ -186,7 +186,7 @@ def plan(
     """Proposes ``poses`` configurations to measure, in the order to visit them.
 
     Instead of a number, ``target_mm`` asks for as few as keep the position error below it, and
-    ``minutes`` for as many as fit. ``criterion`` is v by default (d with ``focus="robot"``), see
+    ``minutes`` for as many as fit. ``criterion`` is v by default (d with ``focus``), see
     :func:`posewise.select`. ``held`` was measured already, a table as measurements; ``repair`` with
     ``drop`` (ids) finds new poses for those of a plan that could not be reached; ``estimate`` plans
     for the robot as an earlier calibration found it, ``as_prior`` as surely as it is known.

@@ -210,7 +210,7 @@ void add_plan_problem(CLI::App& command, PlanArguments& problem) {
     add_criterion_option(command, problem,
                          "Criterion to plan by: o1, o2, o3, o4, o5, a, d, e, g or v; g and v: "
                          "worst and mean position error "
-                         "over the workspace (default: v, with --focus robot d)");
+                         "over the workspace (default: v, with --focus d)");
     add_focus_option(command, problem);
     CLI::Option* const augment =
         command

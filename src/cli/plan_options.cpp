@@ -16,9 +16,9 @@ void add_criterion_option(CLI::App& command, RequestArguments& arguments, const 
 void add_focus_option(CLI::App& command, RequestArguments& arguments) {
     command
         .add_option("--focus", arguments.focus,
-                    "Parameters that count: all, or the robot's; base and targets are then "
-                    "estimated along")
-        ->check(CLI::IsMember({"all", "robot"}))
+                    "Parameters that count: all, the robot's, or place, where targets, tool, "
+                    "camera or board are on the flange (hand-eye); others are estimated along")
+        ->check(CLI::IsMember({"all", "robot", "place"}))
         ->capture_default_str();
 }
 
@@ -96,7 +96,9 @@ PlanRequest make_request(const RequestArguments& arguments) {
     if (!arguments.criterion.empty()) request.criterion = parse_criterion(arguments.criterion);
     request.has_prior = arguments.prior.value_or(false);
     request.seed = arguments.seed;
-    request.is_focused_on_robot = arguments.focus == "robot";
+    request.focus = arguments.focus == "robot"   ? Focus::Robot
+                    : arguments.focus == "place" ? Focus::Place
+                                                 : Focus::All;
     request.sources.estimate = arguments.earlier.from;
     request.earlier = arguments.earlier.use();
     return request;

@@ -43,7 +43,7 @@ void add_select_problem(CLI::App& command, SelectArguments& arguments) {
     add_criterion_option(command, arguments,
                          "Criterion to choose by: o1, o2, o3, o4, o5, a, d, e, g or v (default: "
                          "the campaign's, else v; with "
-                         "--focus robot or --blocks d)");
+                         "--focus or --blocks d)");
     command
         .add_option("--test-poses", request.sources.test_poses,
                     "Poses that g and v predict (as --candidates; default: the candidates)")

@@ -40,10 +40,9 @@ Objective make_objective(const Blocks& candidates, const SelectOptions& options)
                          " columns are nuisance, at least one must be of interest");
     }
     if (objective.test_poses != nullptr || !has_information_function(options.criterion)) {
-        throw InputError(
-            "criterion " + std::string(criterion_name(options.criterion)) +
-            " cannot leave columns out of account (`is_focused_on_robot`, nuisance columns); "
-            "must be d, a, e, o1, o3 or o5");
+        throw InputError("criterion " + std::string(criterion_name(options.criterion)) +
+                         " cannot leave columns out of account (`focus`, nuisance columns); "
+                         "must be d, a, e, o1, o3 or o5");
     }
     objective.nuisance = options.nuisance;
     return objective;

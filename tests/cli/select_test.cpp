@@ -173,7 +173,7 @@ TEST_F(Select, FocusOnTheRobotLeavesBaseAndTargetsOut) {
     EXPECT_LT(number_behind(robot, "value:"), number_behind(all, "value:"));
     run_well("verify s.plan.json");
     expect_input_error("select " + input_ + "-k 8 --focus robot -c g -o no.json",
-                       "criterion g cannot leave columns out of account (--focus robot, ");
+                       "criterion g cannot leave columns out of account (--focus, ");
 }
 
 TEST_F(Select, MeasuredPosesAreHeldAndNotChosenAgain) {

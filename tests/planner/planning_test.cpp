@@ -12,6 +12,7 @@
 #include "posewise/jacobian/identification.hpp"
 #include "support/fanuc_planning.hpp"
 #include "support/fanuc_pool.hpp"
+#include "support/sensors.hpp"
 
 namespace posewise {
 namespace {
@@ -229,7 +230,7 @@ TEST(PlanPoses, FocusOnTheRobotLeavesBaseAndTargetsAside) {
     PlanOptions options = scene.options(Criterion::D, 10, 1);
     options.bound_iterations = 0;
     const PlannedPoses whole = plan_poses(scene.space, scene.pool, scene.blocks, options);
-    options.nuisance = nuisance_of_robot(scene.campaign);
+    options.nuisance = nuisance_of(Focus::Robot, scene.campaign);
     EXPECT_EQ(options.nuisance.size(), 15U);
     const PlannedPoses robot = plan_poses(scene.space, scene.pool, scene.blocks, options);
     Objective objective = make_objective(Criterion::D, 10);
@@ -348,6 +349,31 @@ TEST(SelectPoses, AgreesWhateverTheSeedWhereManyStartsEndBelowTheBest) {
     const Choice first = select_poses(candidates, options);
     options.seed = 2;
     EXPECT_NEAR(select_poses(candidates, options).value, first.value, 1e-9 * first.value);
+}
+
+TEST(NuisanceOf, LeavesRobotOrPlaceOutOfIt) {
+    CameraSetup setup = camera_on_flange();  // seven of its eight intrinsic parameters unknown
+    const Campaign eye = before_camera(tracked_campaign(fanuc()), setup);
+    const auto counts = [](Focus focus, const Campaign& campaign) {
+        const auto names = parameter_names(campaign);
+        std::vector<std::string> left;
+        const std::vector<Index> nuisance = nuisance_of(focus, campaign);
+        for (Index k = 0; k < std::ssize(names); ++k) {
+            if (std::ranges::count(nuisance, k) == 0) {
+                left.push_back(names[static_cast<std::size_t>(k)]);
+            }
+        }
+        return left;
+    };
+    EXPECT_EQ(counts(Focus::Place, eye),
+              (std::vector<std::string>{"camera.x", "camera.y", "camera.z", "camera.rx",
+                                        "camera.ry", "camera.rz"}));
+    EXPECT_EQ(std::ssize(counts(Focus::Robot, eye)), eye.robot.parameter_count());
+    EXPECT_EQ(std::ssize(counts(Focus::All, eye)), parameter_count(eye));
+    const Campaign cube = before_camera(tracked_campaign(fanuc()), camera_before_cube());
+    EXPECT_EQ(counts(Focus::Place, cube).front(), "board.x");  // behind the corners' errors
+    setup.known_place = Isometry3d::Identity();
+    EXPECT_THROW(counts(Focus::Place, before_camera(tracked_campaign(fanuc()), setup)), InputError);
 }
 
 /// Where one joint of six moves, it keeps poses apart alone.

@@ -30,7 +30,7 @@ TEST(DesignSpace, GivesTheGradientOfEveryCriterion) {
             if (robot_only && (criterion == Criterion::G || criterion == Criterion::V)) continue;
             Objective objective = make_objective(criterion, 12, &test_poses);
             objective.sharpness = 20;
-            if (robot_only) objective.nuisance = nuisance_of_robot(campaign);
+            if (robot_only) objective.nuisance = nuisance_of(Focus::Robot, campaign);
             const auto value = [&](const VectorXd& joints) -> VectorXd {
                 return VectorXd::Constant(1, evaluate(objective, rest + space.information(joints)));
             };

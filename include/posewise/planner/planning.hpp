@@ -21,7 +21,7 @@ struct PlanOptions {
     Index pose_count = 0;  ///< K, must be stated; held poses are not counted
     /// Test poses for G and V; the caller keeps them alive. Null: the first 500 poses of the pool.
     const Blocks* test_poses = nullptr;
-    /// Parameters that are estimated, too, but of no interest (see nuisance_of_robot()); not with G
+    /// Parameters that are estimated, too, but of no interest (see nuisance_of()); not with G
     /// and V.
     std::vector<Index> nuisance;
     HeldPoses held;             ///< a prior, poses measured, or both
@@ -67,8 +67,15 @@ struct PlannedPoses {
 PlannedPoses plan_poses(const Campaign& campaign, const Constraints& constraints, const Pool& pool,
                         double repeats, const PlanOptions& options);
 
-/// Columns of base and sensor unknowns: the nuisance if only the robot is of interest.
-std::vector<Index> nuisance_of_robot(const Campaign& campaign);
+/// Parameters that count; the others are estimated along with them.
+enum class Focus {
+    All,
+    Robot,  ///< the robot's errors
+    Place   ///< lengths and angles among the sensor's unknowns: hand-eye, a tool, targets
+};
+/// Columns of what does not count, the base's among them. Intrinsic parameters and errors of a
+/// board's corners are no place. Throws InputError if nothing is left that counts.
+std::vector<Index> nuisance_of(Focus focus, const Campaign& campaign);
 
 /// One pose of a tour and how it is reached.
 struct Visit {

@@ -58,7 +58,7 @@ struct PlanRequest {
     /// Whether the expected errors are also the prior standard deviations. For plain blocks; a
     /// campaign has ParameterSpread::is_prior.
     bool has_prior = false;
-    bool is_focused_on_robot = false;  ///< base and targets are estimated, too, but do not count
+    Focus focus = Focus::All;
     double repeats = 0;  ///< samples per configuration; 0: as in measured candidates, or 1
     /// Independent searches; 0: the search's default. In a plan: those that ended.
     Index starts = 0;

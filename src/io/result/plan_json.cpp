@@ -32,7 +32,8 @@ constexpr Names<CandidateKind, 5> candidate_kinds{
      {CandidateKind::Blocks, "blocks"},
      {CandidateKind::Pool, "pool"}}};
 
-constexpr Names<bool, 2> foci{{{false, "all"}, {true, "robot"}}};
+constexpr Names<Focus, 3> foci{
+    {{Focus::All, "all"}, {Focus::Robot, "robot"}, {Focus::Place, "place"}}};
 
 constexpr Names<bool EarlierUse::*, 2> moved_parts{
     {{&EarlierUse::has_new_base, "base"}, {&EarlierUse::has_new_targets, "targets"}}};
@@ -242,7 +243,7 @@ void problem_fields(const Fields& file, Plan& plan, const FilePath& path) {
     file("pose_count", request.pose_count,
          Count{1, plan.is_continuous() ? most_continuous_poses : most_poses});
     file("prior", request.has_prior);
-    file("focus", request.is_focused_on_robot, OneOf(foci));
+    file("focus", request.focus, OneOf(foci));
     file("augment", sources.augment, path);
     file.optional("measured_plan", !sources.measured_plan.empty(), sources.measured_plan, path);
     file.optional("points_unit", !sources.points_unit.empty(), sources.points_unit);

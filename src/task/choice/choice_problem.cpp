@@ -366,7 +366,7 @@ ChoiceProblem state_choice(const Campaign& campaign, Candidates candidates,
     problem.options.column_names = parameter_names(campaign);
     if (prior_count(campaign) > 0) hold(problem, prior_rows(campaign));
     if (options.held) hold_measured(problem, campaign, parameters, *options.held);
-    if (request.is_focused_on_robot) problem.options.nuisance = nuisance_of_robot(campaign);
+    problem.options.nuisance = nuisance_of(request.focus, campaign);
     if (request.least_distance > 0) {
         problem.options.positions = turning_joints(campaign.robot, problem.configurations);
     }

@@ -92,7 +92,7 @@ void check_is_whole(const Plan& plan, const Campaign& campaign) {
 }  // namespace
 
 void complete(PlanRequest& request, Criterion usual, std::uint64_t seed) {
-    if (request.is_focused_on_robot && usual == Criterion::V) usual = Criterion::D;
+    if (request.focus != Focus::All && usual == Criterion::V) usual = Criterion::D;
     request.criterion = request.criterion.value_or(usual);
     request.seed = request.seed.value_or(seed);
 }

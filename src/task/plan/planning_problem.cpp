@@ -140,7 +140,7 @@ PlanningProblem state_planning(const Campaign& given, const PlanningOptions& opt
     if (options.starts > 0) problem.search.starts = options.starts;
     problem.request.starts = problem.search.starts;
     problem.search.seed = problem.request.seed.value();
-    if (options.is_focused_on_robot) problem.search.nuisance = nuisance_of_robot(campaign);
+    problem.search.nuisance = nuisance_of(options.focus, campaign);
     if (prior_count(campaign) > 0) hold(problem, prior_rows(campaign), {});
     if (options.held) {
         hold(problem, measured_blocks(campaign, campaign.nominal, *options.held).matrix,
