@@ -74,6 +74,11 @@ CameraSetup checked(CameraSetup setup) {
         throw InputError(fmt::format("the corners' sigma is {:g} m, must be from 0 to {:g} m",
                                      setup.corner_sigma, most_corner_sigma));
     }
+    if (!(setup.view.nearest >= 0 && setup.view.nearest < setup.view.farthest)) {
+        throw InputError(
+            fmt::format("depths in view are from {:g} to {:g} m, the first must be less",
+                        setup.view.nearest, setup.view.farthest));
+    }
     return setup;
 }
 
@@ -86,6 +91,14 @@ Index sized_count(const CameraSetup& setup) {
     count += doubtful(setup);
     for (const SingleCamera& other : setup.others) count += doubtful(other);
     return count;
+}
+
+/// ", seen from 250 mm to 900 mm".
+std::string depth_words(const CameraView& view) {
+    std::string words;
+    if (view.nearest > 0) words += fmt::format(" from {:g} mm", mm_per_m * view.nearest);
+    if (std::isfinite(view.farthest)) words += fmt::format(" to {:g} mm", mm_per_m * view.farthest);
+    return words.empty() ? words : ", seen" + words;
 }
 
 /// "camera.", "camera2."
@@ -297,6 +310,7 @@ bool CameraSensor::is_readable(Index target, const ConstNumbers& observation) co
 
 void CameraSensor::view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                                    Eigen::Ref<VectorXd> clearances) const {
+    const CameraView& view = setup_.view;
     const Isometry3d board = camera_from_board(world_from_flange, unknowns);
     Index target = 0;
     for (Index c = 0; c < camera_count(); ++c) {
@@ -312,8 +326,10 @@ void CameraSensor::view_clearances(const Isometry3d& world_from_flange, const Ve
                 const Vector3d normal =
                     one.in_first.linear().transpose() * (board.linear() * *normal_);
                 const double tilt = std::atan2(normal.cross(-p).norm(), normal.dot(-p));
-                least = std::min(least, setup_.view.most_tilt - tilt);
+                least = std::min(least, view.most_tilt - tilt);
             }
+            if (view.nearest > 0) least = std::min(least, p.z() - view.nearest);
+            least = std::min(least, view.farthest - p.z());
             if (image && least > 0) {
                 const Vector2d place = detail::place_of(one.lens, p);
                 const Vector2d focal(one.lens.values[0], one.lens.values[1]);
@@ -324,6 +340,24 @@ void CameraSensor::view_clearances(const Isometry3d& world_from_flange, const Ve
             clearances[target++] = least;
         }
     }
+}
+
+SightLines CameraSensor::sight_lines(const Isometry3d& world_from_flange,
+                                     const VectorXd& unknowns) const {
+    if (!setup_.view.is_line_required) return {};
+    const Isometry3d board = camera_from_board(world_from_flange, unknowns);
+    const Isometry3d world_from_first =
+        setup_.is_on_flange ? world_from_flange * place(unknowns) : Isometry3d::Identity();
+    SightLines lines(6, target_count());
+    Index target = 0;
+    for (Index c = 0; c < camera_count(); ++c) {
+        const Vector3d camera = world_from_first * placed(c, unknowns).in_first.translation();
+        for (Index k = 0; k < corner_count(); ++k) {
+            const Vector3d X = corner(k, unknowns);
+            lines.col(target++) << camera, setup_.is_on_flange ? X : Vector3d(board * X);
+        }
+    }
+    return lines;
 }
 
 SensorWords CameraSensor::words() const {
@@ -347,14 +381,15 @@ SensorWords CameraSensor::words() const {
         unknowns += ", further cameras in the first one's frame";
     }
     if (unknown > 0) unknowns += ", intrinsic parameters of the camera";
-    return {"corners",
-            what,
-            unknowns,
-            "sensor.place",
-            {"base.known", "sensor.place.known"},
-            fmt::format("{} corners of a board seen by {} ({} {}), {}, sigma {} px", corner_count(),
-                        seen_by, what, setup_.known_place ? "known" : "to be identified",
-                        intrinsics, detail::format_short(setup_.sigma))};
+    return {
+        "corners",
+        what,
+        unknowns,
+        "sensor.place",
+        {"base.known", "sensor.place.known"},
+        fmt::format("{} corners of a board seen by {} ({} {}), {}, sigma {} px{}", corner_count(),
+                    seen_by, what, setup_.known_place ? "known" : "to be identified", intrinsics,
+                    detail::format_short(setup_.sigma), depth_words(setup_.view))};
 }
 
 namespace {

@@ -444,10 +444,35 @@ void CombinedSensor::view_clearances(const Isometry3d& world_from_flange, const 
         }
         part.sensor().view_clearances(part_from_first(part, unknowns) * world_from_flange,
                                       unknowns(part.unknowns), own);
+    }
+    hide_incomplete_parts(clearances);
+}
+
+void CombinedSensor::hide_incomplete_parts(Eigen::Ref<VectorXd> clearances) const {
+    for (const Part& part : parts_) {
+        if (!part.sensor().has_view()) continue;
+        auto own = clearances.segment(part.first_target, part.sensor().target_count());
         VectorXd sorted = own;
         std::ranges::sort(sorted, std::greater<>());
         own = own.cwiseMin(sorted[std::min(part.sensor().least_in_view(), sorted.size()) - 1]);
     }
+}
+
+SightLines CombinedSensor::sight_lines(const Isometry3d& world_from_flange,
+                                       const VectorXd& unknowns) const {
+    SightLines all;
+    for (const Part& part : parts_) {
+        const Isometry3d first_from_part = frame(&part - parts_.data(), unknowns);
+        const SightLines own = part.sensor().sight_lines(
+            first_from_part.inverse() * world_from_flange, unknowns(part.unknowns));
+        if (own.cols() == 0) continue;
+        if (all.cols() == 0) all.setZero(6, target_count());
+        for (Index j = 0; j < own.cols(); ++j) {
+            all.col(part.first_target + j) << first_from_part * Vector3d(own.col(j).head<3>()),
+                first_from_part * Vector3d(own.col(j).tail<3>());
+        }
+    }
+    return all;
 }
 
 Index CombinedSensor::least_in_view() const {

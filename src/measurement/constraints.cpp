@@ -118,9 +118,47 @@ Constraints::Constraints(const Campaign& campaign, Cell cell, bool needs_contact
                         "and {}, if only roughly",
                         view_->words().key));
     }
+    if (view_) find_view_screens();
     const Vector3d tracker = tracker_from_base_.inverse().translation();
     for (std::size_t i = 0; i < cell_.keep_outs.size(); ++i) {
         if (!contains(cell_.keep_outs[i].solid, tracker)) screens_.push_back(i);
+    }
+}
+
+void Constraints::find_view_screens() {
+    const auto lines_at = [this](const Isometry3d& base_from_flange) -> SightLines {
+        return view_->sight_lines(tracker_from_base_ * base_from_flange, view_unknowns_);
+    };
+    const SightLines lines = lines_at(Isometry3d::Identity());
+    const SightLines moved = lines_at(Isometry3d(Eigen::Translation3d(1, 1, 1)));
+    if (lines.size() == 0) return;
+    // Ends in the base frame, where the flange is for `lines`.
+    std::vector<Vector3d> fixed, on_flange;
+    for (Index j = 0; j < lines.cols(); ++j) {
+        if (lines.col(j).head<3>() == lines.col(j).tail<3>()) continue;
+        for (const Index end : {0, 3}) {
+            const Vector3d point = lines.block<3, 1>(end, j);
+            const bool is_fixed = (moved.block<3, 1>(end, j) - point).norm() < 0.5;
+            (is_fixed ? fixed : on_flange).push_back(tracker_from_base_.inverse() * point);
+        }
+    }
+    const auto frames = robot_.base_from_links(VectorXd::Zero(robot_.joint_count()), VectorXd());
+    const auto holds_any = [](const Shape& solid, const std::vector<Vector3d>& points) {
+        return std::ranges::any_of(points, [&](const Vector3d& p) { return contains(solid, p); });
+    };
+    for (std::size_t i = 0; i < cell_.keep_outs.size(); ++i) {
+        if (!holds_any(cell_.keep_outs[i].solid, fixed)) view_screens_.push_back(i);
+    }
+    for (std::size_t i = 0; i < cell_.links.size(); ++i) {
+        const Index frame = cell_.links[i].frame;
+        const bool is_on_flange = frame >= robot_.joint_count();
+        const Capsule solid = is_on_flange ? frames.back().inverse() *
+                                                 frames[static_cast<std::size_t>(frame)] *
+                                                 cell_.links[i].solid
+                                           : cell_.links[i].solid;
+        const bool holds_end =
+            is_on_flange ? holds_any(solid, on_flange) : frame == 0 && holds_any(solid, fixed);
+        if (!holds_end) view_links_.push_back(i);
     }
 }
 
@@ -215,6 +253,26 @@ double Constraints::line_clearance(const Posture& posture, const Vector3d& targe
     return least;
 }
 
+double Constraints::view_clearance(const Posture& posture, const SightLines& line) const {
+    // A board may lie on an obstacle, or stand before the last link, as roughly as that is stated.
+    constexpr double before_target = 0.02;  // m
+    const Isometry3d base_from_world = tracker_from_base_.inverse();
+    const Vector3d camera = base_from_world * Vector3d(line.topRows<3>());
+    const Vector3d target = base_from_world * Vector3d(line.bottomRows<3>());
+    const Vector3d way = target - camera;
+    const double length = way.norm();
+    if (length <= before_target) return infinity;
+    const Capsule seen{camera, camera + (1 - before_target / length) * way, 0};
+    double least = infinity;
+    for (const std::size_t i : view_links_) {
+        least = std::min(least, clearance(seen, posture.bodies[i]));
+    }
+    for (const std::size_t i : view_screens_) {
+        least = std::min(least, clearance(seen, cell_.keep_outs[i].solid));
+    }
+    return least;
+}
+
 void Constraints::check_contact(const VectorXd& q, ConstraintReport& report) const {
     constexpr double touches = 1e-9;  // m
     const Parameters& nominal = contact_->nominal;
@@ -272,8 +330,15 @@ void Constraints::check_sight(const Posture& posture, ConstraintReport& report) 
 
 void Constraints::check_view(const Posture& posture, ConstraintReport& report) const {
     VectorXd clearances(view_->target_count());
-    view_->view_clearances(tracker_from_base_ * posture.base_from_flange, view_unknowns_,
-                           clearances);
+    const Isometry3d world_from_flange = tracker_from_base_ * posture.base_from_flange;
+    view_->view_clearances(world_from_flange, view_unknowns_, clearances);
+    if (!view_links_.empty() || !view_screens_.empty()) {
+        const SightLines lines = view_->sight_lines(world_from_flange, view_unknowns_);
+        for (Index j = 0; j < lines.cols(); ++j) {
+            clearances[j] = std::min(clearances[j], view_clearance(posture, lines.col(j)));
+        }
+        view_->hide_incomplete_parts(clearances);
+    }
     report.is_seen = report.is_seen && clearances.transpose().array() >= -pose_rounding;
     report.clearance[static_cast<std::size_t>(Constraint::View)] =
         detail::needed_clearance(clearances, view_->least_in_view());

@@ -41,6 +41,12 @@ class KnownSensor final : public Sensor {
                          Eigen::Ref<VectorXd> clearances) const override {
         sensor_->view_clearances(world_from_flange, unknowns_, clearances);
     }
+    SightLines sight_lines(const Isometry3d& world_from_flange, const VectorXd&) const override {
+        return sensor_->sight_lines(world_from_flange, unknowns_);
+    }
+    void hide_incomplete_parts(Eigen::Ref<VectorXd> clearances) const override {
+        sensor_->hide_incomplete_parts(clearances);
+    }
     Index least_in_view() const override { return sensor_->least_in_view(); }
     bool is_distance(Index row) const override { return sensor_->is_distance(row); }
     bool has_orientation() const override { return sensor_->has_orientation(); }

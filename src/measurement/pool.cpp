@@ -159,10 +159,14 @@ InputError few_feasible(const Constraints& constraints, const Pool& pool, Index 
     }
     if (count == 0) {
         const bool is_alone = pool.rejections[kinds.front()].in_all == pool.candidate_count;
+        const bool may_hide =
+            !constraints.cell().links.empty() || !constraints.cell().keep_outs.empty();
         text += !is_alone ? "; together they leave nothing"
                 : worst == Constraint::View
-                    ? "; where base and the sensor's place are stated to be, no pose looks at the "
-                      "board"
+                    ? std::string(
+                          "; where base and the sensor's place are stated to be, no pose "
+                          "looks at the board") +
+                          (may_hide ? " past links and obstacles" : "")
                     : "; " + name + " alone leaves nothing";
     }
     return InputError(text + ", so relax " + name + " first");

@@ -119,6 +119,8 @@ TEST(ReadCamera, SaysWhatIsWrong) {
     expect_error("most_tilt_deg: 45", "most_tilt_deg: 100", "must be");
     expect_error("least_corners: 5", "least_corners: 7", "from 1 to the board's 6 corners");
     expect_error("front: +z", "front: up", "must be -z or +z");
+    expect_error("front: +z", "nearest_mm: 900, farthest_mm: 250", "not beyond nearest_mm");
+    expect_error("front: +z", "nearest_mm: 0", "must be positive");
     expect_error("[1280, 960]", "[1280, 0]", "at least 1 px");
     expect_error("{columns: 3, rows: 2, square_mm: 25}",
                  "{points_mm: [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0]]}",

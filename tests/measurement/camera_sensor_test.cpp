@@ -271,6 +271,93 @@ TEST(CameraSensor, IsPlannedWhereItSeesEnoughCorners) {
     EXPECT_GT(pool.rejections[static_cast<std::size_t>(Constraint::View)].in_all, 1000);
 }
 
+TEST(CameraSensor, SeesCornersBetweenItsDepthsOnly) {
+    CameraSetup setup = fixed_camera();
+    setup.intrinsics = pinhole;
+    setup.known_place = Isometry3d::Identity();
+    setup.view.nearest = 0.8;
+    setup.view.farthest = 1.5;
+    const auto clearance = [&](double depth) {
+        VectorXd clearances(12);
+        CameraSensor(setup).view_clearances(Isometry3d(Eigen::Translation3d(-0.05, -0.05, depth)),
+                                            VectorXd(), clearances);
+        return clearances[0];
+    };
+    EXPECT_NEAR(clearance(0.75), -0.05, 1e-12);
+    EXPECT_NEAR(clearance(0.85), 0.05, 1e-12);
+    EXPECT_NEAR(clearance(1.49), 0.01, 1e-12);
+    EXPECT_NEAR(clearance(1.6), -0.1, 1e-12);
+}
+
+TEST(CameraSensor, SeesNothingBehindLinksAndObstaclesUnlessTold) {
+    CameraSetup setup = fixed_camera();
+    setup.view.least_corners = 10;
+    Campaign campaign = before_camera(tracked_campaign(fanuc()), setup);
+    const Isometry3d base_from_world = campaign.nominal.world_from_base.inverse();
+    const Pool free = make_pool(Constraints(campaign, campaign.cell), 3000, 1);
+    Cell cell = campaign.cell;
+    // A pole between camera and robot, and a sphere about the camera, which does not blind it.
+    const Vector3d pole = base_from_world * Vector3d(0.1, 0, 1);
+    cell.keep_outs.push_back({"pole", Sphere{pole, 0.1}});
+    cell.keep_outs.push_back({"housing", Sphere{base_from_world.translation(), 0.2}});
+    const Constraints constraints(campaign, cell);
+    const Pool pool = make_pool(constraints, 3000, 1);
+    EXPECT_LT(pool.configurations.rows(), free.configurations.rows());
+    EXPECT_GT(pool.configurations.rows(), 10);
+    const auto& sensor = dynamic_cast<const CameraSensor&>(*campaign.sensor);
+    Index hidden = 0;
+    for (Index i = 0; i < free.configurations.rows(); ++i) {
+        const VectorXd q = free.configurations.row(i).transpose();
+        const Isometry3d board = sensor.camera_from_board(
+            world_from_flange(campaign, campaign.nominal, q), campaign.nominal.sensor);
+        const SeenTargets seen = constraints.seen(q);
+        for (Index k = 0; k < 12; ++k) {
+            const Vector3d corner = board * setup.corners[static_cast<std::size_t>(k)];
+            const Vector3d center(0.1, 0, 1), way = corner.normalized();
+            const double nearest = std::clamp(center.dot(way), 0.0, corner.norm() - 0.02);
+            const bool passes = (center - nearest * way).norm() >= 0.1;
+            EXPECT_EQ(seen[k], passes && free.is_seen(i, k));
+            hidden += passes ? 0 : 1;
+        }
+    }
+    EXPECT_GT(hidden, 50);
+    // So it is beside a tracker, whose frame is another one.
+    const Campaign both = combined_campaign(tracked_campaign(fanuc()), {campaign});
+    const Constraints of_both(both, cell);
+    for (Index i = 0; i < pool.configurations.rows(); ++i) {
+        const SeenTargets seen = of_both.seen(pool.configurations.row(i).transpose());
+        EXPECT_TRUE((seen.tail(12) == pool.is_seen.row(i)).all());
+        EXPECT_TRUE(seen.head(seen.size() - 12).all());
+    }
+    VectorXd clearances = VectorXd::Ones(both.sensor->target_count());
+    clearances.tail<3>().setConstant(-0.1);  // 9 of 12 are left
+    both.sensor->hide_incomplete_parts(clearances);
+    EXPECT_EQ(clearances.tail<12>(), VectorXd::Constant(12, -0.1));
+    EXPECT_EQ(clearances.head(clearances.size() - 12).minCoeff(), 1);
+    setup.view.is_line_required = false;
+    campaign.sensor = std::make_shared<CameraSensor>(setup);
+    EXPECT_EQ(make_pool(Constraints(campaign, cell), 3000, 1).configurations, free.configurations);
+}
+
+/// What is fixed to the flange and holds the camera, or to the table and holds the board.
+TEST(CameraSensor, LooksOutOfWhatHoldsIt) {
+    for (const bool is_on_flange : {true, false}) {
+        CameraSetup setup = is_on_flange ? camera_on_flange() : fixed_camera();
+        setup.view.least_corners = 10;
+        const Campaign campaign = before_camera(tracked_campaign(fanuc()), setup);
+        const Pool free = make_pool(Constraints(campaign, campaign.cell), 4000, 1);
+        const Isometry3d base_from_world = campaign.nominal.world_from_base.inverse();
+        Cell cell = campaign.cell;
+        cell.links.push_back({"holder", 7, Capsule{{0, 0, 0}, {0.1, -0.05, 0.2}, 0.05}});
+        cell.keep_outs.push_back({"table", Sphere{base_from_world.translation(), 0.15}});
+        const Pool held = make_pool(Constraints(campaign, cell), 4000, 1);
+        EXPECT_EQ(held.configurations, free.configurations) << is_on_flange;
+        EXPECT_TRUE((held.is_seen == free.is_seen).all());
+        cell.links.front() = {"arm", 5, Capsule{{0, 0, -0.5}, {0, 0, 0.5}, 0.5}};
+        EXPECT_THROW(make_pool(Constraints(campaign, cell), 4000, 1), InputError);
+    }
+}
+
 /// Noise and what the model cannot express move corners over its edge.
 TEST(CameraSensor, ReadsNothingOutsideOfItsImage) {
     CameraSetup setup = fixed_camera();
@@ -400,6 +487,7 @@ TEST(CameraSensor, RefusesWhatIsNoCamera) {
     refuses([](CameraSetup& s) { s.intrinsics.coefficients.resize(6); });
     refuses([](CameraSetup& s) { s.is_known = {true, false}; });
     refuses([](CameraSetup& s) { s.corners[1].x() = INFINITY; });
+    refuses([](CameraSetup& s) { s.view.nearest = s.view.farthest = 1; });
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,6 +51,9 @@ struct CameraView {
         1.0471975511965976;        ///< rad, between the board's normal and the line of sight
     bool is_front_plus_z = false;  ///< which side of the board bears the pattern; else minus z
     Index least_corners = 4;       ///< a pose must show
+    /// Depths between which a corner is seen, m: sharply, say, or within the camera's reach.
+    double nearest = 0, farthest = std::numeric_limits<double>::infinity();
+    bool is_line_required = true;  ///< whether links and keep-outs of the cell hide corners
 };
 
 /// A lens and what is behind it.
@@ -210,6 +214,8 @@ class CameraSensor final : public Sensor {
     bool is_readable(Index target, const ConstNumbers& observation) const override;
     void view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                          Eigen::Ref<VectorXd> clearances) const override;
+    SightLines sight_lines(const Isometry3d& world_from_flange,
+                           const VectorXd& unknowns) const override;
     Index least_in_view() const override { return setup_.view.least_corners; }
     std::vector<NoiseNumber> noise_numbers() const override;
     SensorWords words() const override;

@@ -33,7 +33,9 @@ enum class Constraint {
     Incidence,
     LineOfSight,
     VisibleTargets,  ///< all five at once for as many targets as must be visible
-    View,            ///< for sensors with has_view(): as many targets as must be are in sight, rad
+    /// For sensors with has_view(): as many targets as must be are in sight and hidden by nothing,
+    /// rad or m.
+    View,
 };
 inline constexpr std::size_t constraint_count = 14;
 
@@ -128,6 +130,10 @@ class Constraints {
     Pair nearest_keep_out(const Posture& posture) const;
     Pair nearest_of_robot(const Posture& posture) const;
     double line_clearance(const Posture& posture, const Vector3d& target) const;
+    /// Which bodies hide what a sensor with has_view() sees: not those that hold an end of its
+    /// lines of sight wherever the robot is.
+    void find_view_screens();
+    double view_clearance(const Posture& posture, const SightLines& line) const;
     void check_contact(const VectorXd& q, ConstraintReport& report) const;
     void check_sight(const Posture& posture, ConstraintReport& report) const;
     void check_view(const Posture& posture, ConstraintReport& report) const;
@@ -145,6 +151,7 @@ class Constraints {
     std::vector<Link> bodies_;       // the cell's links, then the balls at the targets
     std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // bodies that may collide
     std::vector<std::size_t> screens_;                        // keep-outs that hide
+    std::vector<std::size_t> view_links_, view_screens_;      // links and keep-outs, from a camera
     VectorXd clearance_rates_;
 };
 

@@ -43,6 +43,10 @@ std::vector<Index> seen_rows(const Sensor& sensor, const SeenTargets& is_seen);
 /// Numbers of the targets seen as text, from 1: "1 3".
 std::string target_numbers(const SeenTargets& is_seen);
 
+/// Lines of sight, a column for each target: a point of the instrument, then the target's, both in
+/// the world, m. Where they are the same nothing hides the target.
+using SightLines = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
 /// Radius of the ball that a laser tracker follows (1.5 inch in diameter), m.
 inline constexpr double tracker_ball_radius = 0.01905;
 
@@ -246,11 +250,20 @@ class Sensor {
     Index seen_at_once() const { return has_contacts() ? 1 : target_count(); }
     /// Whether it sees targets only where they face it, so that planning needs clearances.
     virtual bool has_view() const { return false; }
-    /// For a sensor with a view: how far each target is from being out of sight, rad; negative: it
-    /// is. One value a target.
+    /// For a sensor with a view: how far each target is from being out of sight, rad or m;
+    /// negative: it is. One value a target.
     virtual void view_clearances(const Isometry3d& /*world_from_flange*/,
                                  const VectorXd& /*unknowns*/,
                                  Eigen::Ref<VectorXd> /*clearances*/) const {}
+    /// For a sensor with a view: the lines along which it sees its targets; none if nothing in the
+    /// cell hides them.
+    virtual SightLines sight_lines(const Isometry3d& /*world_from_flange*/,
+                                   const VectorXd& /*unknowns*/) const {
+        return {};
+    }
+    /// For a sensor of several parts: where one shows fewer than it needs by these clearances, none
+    /// of its targets is in sight. view_clearances() are so already.
+    virtual void hide_incomplete_parts(Eigen::Ref<VectorXd> /*clearances*/) const {}
     /// Whether a sensor with a view may read these numbers of a target: inside of an image.
     virtual bool is_readable(Index /*target*/, const ConstNumbers& /*observation*/) const {
         return true;

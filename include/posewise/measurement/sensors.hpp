@@ -457,6 +457,9 @@ class CombinedSensor final : public Sensor {
     /// A part that shows fewer than the least it needs shows none.
     void view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                          Eigen::Ref<VectorXd> clearances) const override;
+    SightLines sight_lines(const Isometry3d& world_from_flange,
+                           const VectorXd& unknowns) const override;
+    void hide_incomplete_parts(Eigen::Ref<VectorXd> clearances) const override;
     /// One at least of the parts with a view must see what it needs: the least that any needs.
     Index least_in_view() const override;
     bool needs_first_guess() const override;

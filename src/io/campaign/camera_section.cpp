@@ -136,8 +136,22 @@ void read_intrinsics(const YamlValue& value, Index number, SingleCamera& setup) 
         camera.image->x(), camera.image->y(), setup.image->x(), setup.image->y()));
 }
 
+void read_depths(const YamlMap& map, CameraView& view) {
+    if (const auto nearest = map.find_measure("nearest")) view.nearest = read_positive(*nearest);
+    const auto farthest = map.find_measure("farthest");
+    if (!farthest) return;
+    view.farthest = read_positive(*farthest);
+    if (view.farthest > view.nearest) return;
+    throw farthest->value.error(
+        fmt::format("is {}, not beyond nearest_mm", quote(farthest->value.text())));
+}
+
 void read_view(const YamlValue& value, CameraSetup& setup) {
     const YamlMap view(value, keys::camera, "view");
+    read_depths(view, setup.view);
+    if (const auto line = view.find("line_of_sight")) {
+        setup.view.is_line_required = line->boolean();
+    }
     if (const auto tilt = view.find_measure("most_tilt")) {
         setup.view.most_tilt = read_positive(*tilt, false, 1.5707963267948966);
     }

@@ -295,6 +295,10 @@ const YamlKeys camera{
         {"most_tilt_deg", "view",
          "between a plane board's normal and the line of sight of a corner", "60", "`50`"},
         {"least_corners", "view", "a pose must show", "4", "`20`"},
+        {"nearest_mm", "view", "least depth of a corner, along the camera's axis", "0", "`250`"},
+        {"farthest_mm", "view", "largest depth of a corner", "any", "`900`"},
+        {"line_of_sight", "view", "whether the cell's links and obstacles hide corners", "`true`",
+         "`false`"},
         {"front", "view", "the side of a plane board that bears the pattern: `-z` or `+z`", "`-z`",
          "`+z`"},
     }};
