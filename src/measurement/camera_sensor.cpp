@@ -52,6 +52,7 @@ void check(SingleCamera& camera) {
     if (assumed.fy == 0 && !camera.is_known[1]) assumed.fy = 1;
     check_intrinsics(assumed);
     detail::check_sigma("sigma", detail::kpx_per_px * camera.sigma, "kpx");
+    detail::check_growth(camera.growth);
 }
 
 CameraSetup checked(CameraSetup setup) {
@@ -91,6 +92,14 @@ Index sized_count(const CameraSetup& setup) {
     count += doubtful(setup);
     for (const SingleCamera& other : setup.others) count += doubtful(other);
     return count;
+}
+
+/// ", growing with tilt".
+std::string growth_words(const NoiseGrowth& growth) {
+    if (growth.is_none()) return "";
+    return fmt::format(", growing with {}{}{}", growth.tilt > 0 ? "tilt" : "",
+                       growth.tilt > 0 && growth.focus ? " and " : "",
+                       growth.focus ? "distance from focus" : "");
 }
 
 /// ", seen from 250 mm to 900 mm".
@@ -143,6 +152,10 @@ CameraSensor::CameraSensor(CameraSetup setup)
         const Vector3d normal = plane->linear().col(2);
         const bool is_plus = normal.z() > 0 || (normal.z() == 0 && normal.sum() > 0);
         normal_ = is_plus == setup_.view.is_front_plus_z ? normal : Vector3d(-normal);
+    }
+    for (Index c = 0; c < camera_count() && !normal_; ++c) {
+        if (camera(c).growth.tilt == 0) continue;
+        throw InputError("noise.tilt is stated, but the corners are in no plane; must be left out");
     }
 }
 
@@ -282,25 +295,6 @@ void CameraSensor::predict(const Isometry3d& world_from_flange, const VectorXd& 
     }
 }
 
-void CameraSensor::covariance(const Isometry3d&, const VectorXd&,
-                              Eigen::Ref<MatrixXd> covariance) const {
-    covariance.setZero();
-    for (Index c = 0; c < camera_count(); ++c) {
-        const double sigma = detail::kpx_per_px * camera(c).sigma;
-        covariance.diagonal()
-            .segment(2 * c * corner_count(), 2 * corner_count())
-            .setConstant(sigma * sigma);
-    }
-}
-
-std::vector<NoiseNumber> CameraSensor::noise_numbers() const {
-    std::vector<NoiseNumber> numbers{{"sigma_px", {setup_.sigma}}};
-    for (Index c = 1; c < camera_count(); ++c) {
-        numbers.push_back({fmt::format("camera{}_sigma_px", c + 1), {camera(c).sigma}});
-    }
-    return numbers;
-}
-
 bool CameraSensor::is_readable(Index target, const ConstNumbers& observation) const {
     const auto& image = camera(target / corner_count()).image;
     if (!image) return true;
@@ -387,9 +381,10 @@ SensorWords CameraSensor::words() const {
         unknowns,
         "sensor.place",
         {"base.known", "sensor.place.known"},
-        fmt::format("{} corners of a board seen by {} ({} {}), {}, sigma {} px{}", corner_count(),
+        fmt::format("{} corners of a board seen by {} ({} {}), {}, sigma {} px{}{}", corner_count(),
                     seen_by, what, setup_.known_place ? "known" : "to be identified", intrinsics,
-                    detail::format_short(setup_.sigma), depth_words(setup_.view))};
+                    detail::format_short(setup_.sigma), growth_words(setup_.growth),
+                    depth_words(setup_.view))};
 }
 
 namespace {

@@ -33,4 +33,7 @@ CameraInFirst camera_in_first(const CameraSensor& sensor, Index camera, const Ve
 BoardFromCamera board_from_camera(const CameraSensor& sensor, const Isometry3d& world_from_flange,
                                   const VectorXd& unknowns);
 
+/// Throws InputError for a number that no lens has.
+void check_growth(const NoiseGrowth& growth);
+
 }  // namespace posewise::detail

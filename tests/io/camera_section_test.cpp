@@ -84,6 +84,29 @@ TEST(ReadCamera, KnowsIntrinsicsWithDeviations) {
     EXPECT_NE(error("deviations: {k3: 1}").find("is of no intrinsic parameter"), std::string::npos);
 }
 
+TEST(ReadCamera, TakesHowNoiseGrowsAndHowFarItSees) {
+    EXPECT_TRUE(setup_of(with_camera(camera)).growth.is_none());
+    const std::string grown =
+        replaced(camera, "sigma_px: 0.25",
+                 "sigma_px: 0.25\n  noise: {tilt: 1, focus_mm: 600, aperture_mm: 4.5}");
+    const Campaign campaign = with_camera(
+        replaced(grown, "front: +z", "nearest_mm: 250, farthest_mm: 900, line_of_sight: false") +
+        "  other_cameras: [{intrinsics: {fx_px: 600, fy_px: 600}, noise: {tilt: 0.5}}]\n");
+    const CameraSetup& setup = setup_of(campaign);
+    EXPECT_EQ(setup.growth.tilt, 1);
+    EXPECT_NEAR(*setup.growth.focus, 0.6, 1e-15);
+    EXPECT_NEAR(setup.growth.aperture, 4.5e-3, 1e-15);
+    EXPECT_EQ(setup.others[0].growth.tilt, 0.5);
+    EXPECT_EQ(setup.others[0].growth.focus, setup.growth.focus);
+    EXPECT_NEAR(setup.view.nearest, 0.25, 1e-15);
+    EXPECT_NEAR(setup.view.farthest, 0.9, 1e-15);
+    EXPECT_FALSE(setup.view.is_line_required);
+    EXPECT_NE(
+        campaign.sensor->words().sentence.find(
+            "sigma 0.25 px, growing with tilt and distance from focus, seen from 250 mm to 900 mm"),
+        std::string::npos);
+}
+
 TEST(ReadCamera, LearnsSizesOnlyIfTold) {
     EXPECT_FALSE(with_camera(camera).spread.is_open);
     EXPECT_TRUE(with_camera(camera + "sizes: learned\n").spread.is_open);
@@ -121,6 +144,10 @@ TEST(ReadCamera, SaysWhatIsWrong) {
     expect_error("front: +z", "front: up", "must be -z or +z");
     expect_error("front: +z", "nearest_mm: 900, farthest_mm: 250", "not beyond nearest_mm");
     expect_error("front: +z", "nearest_mm: 0", "must be positive");
+    const std::string sigma = "sigma_px: 0.25";
+    expect_error(sigma, sigma + "\n  noise: {focus_mm: 600}", "both focus_mm and aperture_mm");
+    expect_error(sigma, sigma + "\n  noise: {tilt: 9}", "noise.tilt is 9, must be from 0 to 4");
+    expect_error(sigma, sigma + "\n  noise: {range_um: 9}", "unknown key 'range_um'");
     expect_error("[1280, 960]", "[1280, 0]", "at least 1 px");
     expect_error("{columns: 3, rows: 2, square_mm: 25}",
                  "{points_mm: [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0]]}",

@@ -289,6 +289,37 @@ TEST(CameraSensor, SeesCornersBetweenItsDepthsOnly) {
     EXPECT_NEAR(clearance(1.6), -0.1, 1e-12);
 }
 
+TEST(CameraSensor, IsNoisierWhereTheBoardIsTiltedAndOutOfFocus) {
+    CameraSetup setup = fixed_camera();
+    setup.intrinsics = pinhole;
+    setup.corners = {{0, 0, 0}, {0.1, 0, 0}, {0.1, 0.1, 0}, {0, 0.1, 0}};
+    setup.known_place = Isometry3d::Identity();
+    setup.sigma = 0.3;
+    const auto sigma_at = [&](double tilt, double depth) {
+        const Isometry3d pose =
+            Eigen::Translation3d(0, 0, depth) * Eigen::AngleAxisd(tilt, Vector3d::UnitX());
+        const MatrixXd covariance = CameraSensor(setup).covariance(pose, VectorXd());
+        EXPECT_EQ(covariance(0, 0), covariance(1, 1));
+        EXPECT_TRUE(covariance.isDiagonal(0));
+        return 1e3 * std::sqrt(covariance(0, 0));  // of the corner at the board's origin
+    };
+    EXPECT_EQ(sigma_at(0.5, 1), 0.3);
+    setup.growth.tilt = 1;
+    EXPECT_NEAR(sigma_at(0, 1), 0.3, 1e-15);
+    EXPECT_NEAR(sigma_at(std::numbers::pi / 3, 1), 0.6, 1e-12);
+    EXPECT_NEAR(sigma_at(1.57, 1), 0.3 / 0.05, 1e-12) << "no more than that";
+    setup.growth.tilt = 0.5;
+    EXPECT_NEAR(sigma_at(std::numbers::pi / 3, 1), 0.3 * std::sqrt(2.0), 1e-12);
+    setup.growth = {0, 0.5, 4e-3};
+    EXPECT_NEAR(sigma_at(1, 0.5), 0.3, 1e-15);
+    const double blur = 1210 * 4e-3 * (1 / 0.5 - 1 / 0.8);
+    EXPECT_NEAR(sigma_at(1, 0.8), 0.3 * std::hypot(1, blur), 1e-12);
+    EXPECT_FALSE(CameraSensor(setup).has_constant_covariance());
+    std::vector<std::string> names;
+    for (const NoiseNumber& one : CameraSensor(setup).noise_numbers()) names.push_back(one.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"sigma_px", "focus_m", "aperture_m"}));
+}
+
 TEST(CameraSensor, SeesNothingBehindLinksAndObstaclesUnlessTold) {
     CameraSetup setup = fixed_camera();
     setup.view.least_corners = 10;
@@ -487,7 +518,14 @@ TEST(CameraSensor, RefusesWhatIsNoCamera) {
     refuses([](CameraSetup& s) { s.intrinsics.coefficients.resize(6); });
     refuses([](CameraSetup& s) { s.is_known = {true, false}; });
     refuses([](CameraSetup& s) { s.corners[1].x() = INFINITY; });
+    refuses([](CameraSetup& s) { s.growth.tilt = -1; });
+    refuses([](CameraSetup& s) { s.growth = {0, 0.0, 4e-3}; });
+    refuses([](CameraSetup& s) { s.growth = {0, 0.5, 0}; });
     refuses([](CameraSetup& s) { s.view.nearest = s.view.farthest = 1; });
+    refuses([](CameraSetup& s) {
+        s = camera_before_cube();
+        s.growth.tilt = 1;
+    });
 }
 
 }  // namespace

@@ -84,6 +84,15 @@ inline CameraSetup three_cameras() {
     return setup;
 }
 
+/// Two cameras whose corners are noisier when tilted and out of focus, each by its own.
+inline CameraSetup cameras_with_focus() {
+    CameraSetup setup = fixed_camera();
+    setup.others = {setup};
+    setup.growth = {1, 2.5, 4e-3};
+    setup.others[0].growth = {0.5, std::nullopt, 0};
+    return setup;
+}
+
 /// Where the further ones of three cameras are in the first one's frame.
 inline std::vector<PlacedCamera> beside_first(const CameraSetup& setup) {
     std::vector<PlacedCamera> placed;
@@ -181,6 +190,8 @@ inline Campaign touched_planes(const Campaign& from) {
 inline std::vector<SensorCampaign> combined_campaigns(const Chain& robot) {
     const Campaign points = tracked_campaign(robot);
     const Campaign camera = before_camera(points, fixed_camera());
+    CameraSetup on_flange = camera_on_flange();
+    on_flange.growth = {1, 2.8, 3e-3};
     Isometry3d tool(Eigen::AngleAxisd(2.5, Vector3d(1, -2, 0.5).normalized()));
     tool.translation() = Vector3d(0.1, -0.05, 0.2);
     Campaign poses =
@@ -191,8 +202,7 @@ inline std::vector<SensorCampaign> combined_campaigns(const Chain& robot) {
             {"tracker and camera", combined_campaign(points, {camera})},
             {"tracker and planes", combined_campaign(points, {touched_planes(points)})},
             {"camera and planes, frame known",
-             combined_campaign(before_camera(points, camera_on_flange()), {touched_planes(points)},
-                               true)},
+             combined_campaign(before_camera(points, on_flange), {touched_planes(points)}, true)},
             {"poses and points", combined_campaign(poses, {points})},
             {"two boards before a camera on the flange", two_boards(points, camera_on_flange())},
             {"two boards on the flange", two_boards(points, fixed_camera())},
@@ -291,6 +301,12 @@ inline std::vector<SensorCampaign> campaigns_of_every_sensor(const Chain& robot)
         {"camera before markers known roughly", before_camera(points, camera_before_cube())});
     all.push_back({"camera whose intrinsics are known with deviations",
                    before_camera(points, roughly_known_camera())});
+    all.push_back(
+        {"cameras whose noise grows with the pose", before_camera(points, cameras_with_focus())});
+    CameraSetup focused_on_flange = camera_on_flange();
+    focused_on_flange.growth = {1, 2.8, 3e-3};
+    all.push_back({"camera on the flange whose noise grows with the pose",
+                   before_camera(points, focused_on_flange)});
     for (SensorCampaign& several : combined_campaigns(robot)) all.push_back(std::move(several));
     return all;
 }

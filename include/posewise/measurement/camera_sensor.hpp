@@ -56,6 +56,23 @@ struct CameraView {
     bool is_line_required = true;  ///< whether links and keep-outs of the cell hide corners
 };
 
+/// How the noise of a corner grows. With its standard deviation sigma where it is seen straight on
+/// and in focus, it is
+///     sigma (1 / cos t)^tilt sqrt(1 + b^2),    b = fx aperture |1/z - 1/focus|
+/// at an angle t between a plane board's normal and the line of sight, and a depth z. The pattern
+/// is cos t times as long across the axis about which it is tilted: tilt is 1 where the noise grows
+/// as that length shrinks, 0.5 as the number of pixels does. b is the blur's width in px, by the
+/// thin lens: the image of a point at z would be sharp at v' with 1/v' - 1/v = 1/focus - 1/z, v the
+/// image's distance (fx in px), so that its cone is aperture v |1/v' - 1/v| wide. A sharp edge is
+/// 1 px wide, the squares of widths add up, and a corner is found to a part of that width.
+struct NoiseGrowth {
+    double tilt = 0;                ///< 0: with none
+    std::optional<double> focus{};  ///< depth that is in focus, m; nothing: all depths are
+    double aperture = 0;            ///< diameter, m: the focal length divided by the f-number
+
+    bool is_none() const { return tilt == 0 && !focus; }
+};
+
 /// A lens and what is behind it.
 struct SingleCamera {
     Intrinsics intrinsics;  ///< unknown ones: where a search begins; 0: from what is seen
@@ -66,6 +83,7 @@ struct SingleCamera {
     std::vector<double> deviations{};
     double sigma = 0;               ///< standard deviation of u and of v, px
     std::optional<Vector2d> image;  ///< width and height, px; nothing: any place
+    NoiseGrowth growth{};
 };
 
 /// A further camera: where it is in the first one's frame, its lens and its image.
@@ -122,7 +140,8 @@ struct CameraSetup : SingleCamera {
 class CameraSensor final : public Sensor {
   public:
     /// Throws InputError if there are fewer than 4 corners, if all are in line, if a number is not
-    /// finite, if sigma is below 1e-12 px, or as check_intrinsics(); unknown intrinsics may be 0.
+    /// finite, if sigma is below 1e-12 px, if it grows with the tilt of a board that is no plane,
+    /// if no depth is in view, or as check_intrinsics(); unknown intrinsics may be 0.
     explicit CameraSensor(CameraSetup setup);
 
     const CameraSetup& setup() const { return setup_; }
@@ -207,9 +226,11 @@ class CameraSensor final : public Sensor {
                              const Twist& direction, const TwistMatrix& twist_rates,
                              const VectorXd& unknowns,
                              Eigen::Ref<RowMatrixXd> J_rate) const override;
-    void covariance(const Isometry3d&, const VectorXd&,
+    void covariance(const Isometry3d& world_from_flange, const VectorXd& unknowns,
                     Eigen::Ref<MatrixXd> covariance) const override;
-    bool has_constant_covariance() const override { return true; }
+    MatrixXd covariance_rate(const Isometry3d& world_from_flange, const Twist& direction,
+                             const VectorXd& unknowns) const override;
+    bool has_constant_covariance() const override;
     bool has_view() const override { return true; }
     bool is_readable(Index target, const ConstNumbers& observation) const override;
     void view_clearances(const Isometry3d& world_from_flange, const VectorXd& unknowns,

@@ -10,6 +10,7 @@
 #include "campaign_sections.hpp"
 #include "io/format/text.hpp"
 #include "keys.hpp"
+#include "measurement/camera_view.hpp"
 #include "posewise/measurement/camera_sensor.hpp"
 
 namespace posewise::detail {
@@ -136,6 +137,25 @@ void read_intrinsics(const YamlValue& value, Index number, SingleCamera& setup) 
         camera.image->x(), camera.image->y(), setup.image->x(), setup.image->y()));
 }
 
+/// What is not stated stays as it is.
+void read_growth(const YamlMap& sensor, NoiseGrowth& growth) {
+    const auto value = sensor.find("noise");
+    if (!value) return;
+    const YamlMap noise(*value, keys::noise, "camera");
+    if (const auto tilt = noise.find("tilt")) growth.tilt = tilt->number();
+    const auto focus = noise.find_measure("focus"), aperture = noise.find_measure("aperture");
+    if (focus.has_value() != aperture.has_value()) {
+        throw value->error("must state both focus_mm and aperture_mm, or none of them");
+    }
+    if (focus) growth.focus = read_positive(*focus);
+    if (aperture) growth.aperture = read_positive(*aperture);
+    try {
+        check_growth(growth);
+    } catch (const InputError& e) {
+        throw value->error(std::string("cannot be used: ") + e.what());
+    }
+}
+
 void read_depths(const YamlMap& map, CameraView& view) {
     if (const auto nearest = map.find_measure("nearest")) view.nearest = read_positive(*nearest);
     const auto farthest = map.find_measure("farthest");
@@ -194,6 +214,8 @@ std::vector<PlacedCamera> read_others(const YamlValue& list, CameraSetup& setup,
         SingleCamera camera;
         const auto sigma = map.find_measure("sigma");
         camera.sigma = sigma ? px_per_kpx * read_positive(*sigma) : setup.sigma;
+        camera.growth = setup.growth;
+        read_growth(map, camera.growth);
         read_image(map, camera);
         const Index number = 1 + static_cast<Index>(setup.others.size());
         read_intrinsics(map.require("intrinsics"), number, camera);
@@ -267,6 +289,7 @@ SensorSection read_camera(const YamlValue& value) {
         throw mounting.error("is " + quote(mounting.text()) + "; must be flange or fixed");
     }
     setup.sigma = px_per_kpx * read_positive(sensor.require_measure("sigma"));
+    read_growth(sensor, setup.growth);
     read_image(sensor, setup);
     read_intrinsics(sensor.require("intrinsics"), 0, setup);
     const YamlValue board = sensor.require("board");

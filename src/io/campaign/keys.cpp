@@ -214,6 +214,8 @@ const YamlKeys sensor{
          "found in the camera's frame (z forwards, x to the right of the image, y down)",
          "required", "`flange`"},
         {"sigma_px", "camera", "standard deviation of a corner's u and v", "required", "`0.3`"},
+        {"noise", "camera", "how it grows with tilt and out of focus, see below",
+         "the same anywhere", "`{tilt: 1}`"},
         {"image_px", "camera",
          "width and height: corners outside are refused, and poses planned to show the board "
          "inside",
@@ -288,6 +290,7 @@ const YamlKeys camera{
          "`{file: left.yaml}`"},
         {"image_px", "other_cameras", "as of the first camera", "any place", "`[1280, 960]`"},
         {"sigma_px", "other_cameras", "as of the first camera", "the first one's", "`0.3`"},
+        {"noise", "other_cameras", "as of the first camera", "the first one's", "`{tilt: 1}`"},
         {"place", "other_cameras",
          "where it is in the first one's frame, roughly, to plan and simulate; found by views that "
          "they share",
@@ -345,11 +348,21 @@ const YamlKeys board{
          "1; of charuco and aprilgrid 0", "`0`"},
     }};
 
-const YamlKeys noise{"noise",
-                     {
-                         {"range_um", "", "along the beam", "required", "`10`"},
-                         {"angle_urad", "", "of each of the two angles", "required", "`15`"},
-                     }};
+const YamlKeys noise{
+    "noise",
+    {
+        {"range_um", "points and poses", "along the beam", "required", "`10`"},
+        {"angle_urad", "points and poses", "of each of the two angles", "required", "`15`"},
+        {"tilt", "camera",
+         "exponent of 1 / cos of the angle between a plane board's normal and "
+         "the line of sight, by which a corner's noise grows: 1 as its pattern "
+         "is foreshortened, 0.5 as it covers fewer pixels",
+         "0: it does not", "`1`"},
+        {"focus_mm", "camera", "depth that is in focus", "all depths are", "`600`"},
+        {"aperture_mm", "camera",
+         "diameter of the lens' aperture, its focal length divided by the f-number",
+         "required with `focus_mm`", "`4.5`"},
+    }};
 
 const YamlKeys places{
     "places",

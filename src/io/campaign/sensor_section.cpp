@@ -77,7 +77,7 @@ PointNoise read_noise(const YamlValue& value, const YamlMap& sensor) {
         throw value.error("must have either sigma_mm or noise");
     }
     if (noise) {
-        const YamlMap tracker(*noise, keys::noise);
+        const YamlMap tracker(*noise, keys::noise, "points");
         return LaserTrackerNoise{read_positive(tracker.require_measure("range")),
                                  read_positive(tracker.require_measure("angle"))};
     }

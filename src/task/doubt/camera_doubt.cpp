@@ -95,14 +95,13 @@ bool is_seen_from_back(const Campaign& campaign, const CameraSensor& camera,
 double scatter_about_poses(const Campaign& campaign, const Measurements& measured,
                            const Parameters& registered) {
     const Sensor& sensor = *campaign.sensor;
-    const VectorXd sigmas =
-        sensor.covariance(Isometry3d::Identity(), registered.sensor).diagonal().cwiseSqrt();
     const TwistMatrix twists = TwistMatrix::Identity(6, 6);
     std::vector<double> variances;
     RowMatrixXd J(sensor.row_count(), twists.cols());
     for (Index i = 0; i < measured.configuration_count(); ++i) {
         const Isometry3d flange =
             world_from_flange(campaign, registered, measured.configurations.row(i).transpose());
+        const VectorXd sigmas = sensor.covariance(flange, registered.sensor).diagonal().cwiseSqrt();
         sensor.differentiate(flange, twists, registered.sensor, J);
         J = sigmas.cwiseInverse().asDiagonal() * J;
         const VectorXd predicted = sensor.predict(flange, registered.sensor);

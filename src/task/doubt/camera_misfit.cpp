@@ -1,10 +1,12 @@
 #include "camera_misfit.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/statistics.hpp"
 #include "measurement/board_starts.hpp"
+#include "measurement/camera_model.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/camera_sensor.hpp"
@@ -60,6 +62,16 @@ std::optional<double> distance_of(const SingleCampaign& one) {
     }
 }
 
+/// Expected of each number of a sample, kpx^2.
+VectorXd expected_variances(const Campaign& campaign, const Measurements& measured,
+                            const Parameters& registered, Index sample) {
+    const auto next = std::ranges::upper_bound(measured.first_sample, sample);
+    const Index i = next - measured.first_sample.begin() - 1;
+    const Isometry3d flange =
+        world_from_flange(campaign, registered, measured.configurations.row(i).transpose());
+    return campaign.sensor->covariance(flange, registered.sensor).diagonal();
+}
+
 }  // namespace
 
 bool fits_no_pose(const Campaign& campaign, const Measurements& measured,
@@ -71,13 +83,19 @@ bool fits_no_pose(const Campaign& campaign, const Measurements& measured,
         !camera->has_exact_corners()) {
         return false;
     }
+    const Index corners = camera->corner_count();
     std::vector<double> left;
     for (const Index sample : evenly_spaced(measured.observations.rows(), enough)) {
+        const VectorXd variances = expected_variances(campaign, measured, registered, sample);
         for (Index c = 0; c < camera->camera_count(); ++c) {
             const auto one = camera->left_by_any_pose(c, registered.sensor,
                                                       measured.observations.row(sample).transpose(),
                                                       measured.is_seen.row(sample));
-            if (one) left.push_back(*one / camera->camera(c).sigma);
+            if (!one) continue;
+            const SeenTargets seen = measured.is_seen.row(sample).segment(c * corners, corners);
+            const VectorXd shown =
+                variances.segment(2 * c * corners, 2 * corners)(seen_rows(seen, 2));
+            left.push_back(kpx_per_px * *one / std::sqrt(shown.mean()));
         }
     }
     std::ranges::sort(left);
