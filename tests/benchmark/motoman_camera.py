@@ -1,13 +1,15 @@
 """A camera's calibration judged by a laser tracker: the right arm of the public Motoman campaign
 `motoman_camera` (ctu-vras/multirobot-calibration), calibrated by the corners that one or two fixed
 cameras see of it, with views chosen by V and at random, and judged at the reflector's 146 places
-with base and reflector fitted anew. Beside what is found stands what was expected of the robot.
+with base and reflector fitted anew. Beside what is found stands what was expected of the robot
+between the joint values of these places, of which the campaign makes its limits.
 
 POSEWISE_REAL_DATA=FOLDER python3 tests/benchmark/motoman_camera.py PROGRAM [counts [seconds]]
 """
 
 import csv
 import json
+import math
 import os
 import random
 import subprocess
@@ -19,6 +21,11 @@ import yaml
 DATA = os.path.join(os.environ["POSEWISE_REAL_DATA"], "motoman_camera")
 
 
+def judged_rows():
+    with open(os.path.join(DATA, "leica.csv"), encoding="utf-8") as rows:
+        return [row for row in csv.DictReader(rows) if row["set"] == "leica_right_hand_6x6x6"]
+
+
 def robot_of(cameras):
     elements = []
     for number, row in enumerate(cameras["arms"]["right"][1:7], 1):
@@ -26,7 +33,10 @@ def robot_of(cameras):
                  (f"Tz {row['d_mm']} mm", row["d_mm"]), (f"Tx {row['a_mm']} mm", row["a_mm"]),
                  (f"Rx {row['alpha_deg']} deg", row["alpha_deg"])]
         elements += [text for text, size in parts if size]
-    joints = {f"q{j}": {"limits_deg": [-180, 180]} for j in range(1, 7)}
+    joints = {}
+    for j in range(1, 7):
+        values = [math.degrees(float(row[f"rq{j}_rad"])) for row in judged_rows()]
+        joints[f"q{j}"] = {"limits_deg": [min(values) - 1, max(values) + 1]}
     return {"class": "industrial", "joints": joints, "elements": elements}
 
 
@@ -71,12 +81,9 @@ def write_tables(folder, count):
                 ids.append(view)
             cells = [view, *(row[j] for j in joints), row["camera"], row["marker"], row["u_px"], row["v_px"]]
             out.write(",".join(cells) + "\n")
-    with open(os.path.join(DATA, "leica.csv"), encoding="utf-8") as rows, \
-            open(os.path.join(folder, "leica.csv"), "w", encoding="utf-8") as out:
+    with open(os.path.join(folder, "leica.csv"), "w", encoding="utf-8") as out:
         out.write(f"config,sample,{names},p1_x_mm,p1_y_mm,p1_z_mm\n")
-        for row in csv.DictReader(rows):
-            if row["set"] != "leica_right_hand_6x6x6":
-                continue
+        for row in judged_rows():
             cells = [row["config"], row["sample"], *(row[j] for j in joints), row["x_mm"], row["y_mm"], row["z_mm"]]
             out.write(",".join(cells) + "\n")
     return list(dict.fromkeys(ids))

@@ -134,14 +134,14 @@ inline Campaign combined_campaign(const Campaign& first, const std::vector<Campa
     return with_sensor(first, sensor, sensor->unknowns(unknowns, frames));
 }
 
-/// One camera that sees two boards, the second one 1 m beside the first, on the same side of it.
+/// One camera that sees two boards, the second one 0.3 m beside the first, on the same side of it.
 inline Campaign two_boards(const Campaign& from, const CameraSetup& setup) {
     const Campaign first = before_camera(from, setup);
     CameraSetup other = setup;
     other.corners = chessboard(3, 3, 0.08);
     const auto second = std::make_shared<CameraSensor>(other);
     Isometry3d beside(Eigen::AngleAxisd(0.3, Vector3d(1, 0.5, 0.2).normalized()));
-    beside.translation() = Vector3d(1, 0.1, -0.2);
+    beside.translation() = Vector3d(0.3, 0.1, -0.1);
     const auto sensor = std::make_shared<CombinedSensor>(std::vector<SensorPart>{
         {first.sensor},
         {second, setup.is_on_flange ? std::optional<Isometry3d>() : Isometry3d::Identity(), true,

@@ -153,7 +153,7 @@ TEST(SizeDoubts, NameAMarkerThatIsFarFromItsPlace) {
     const auto found = std::ranges::find(sizes, "board.p3.x", &SizeDoubt::parameter);
     ASSERT_NE(found, sizes.end());
     EXPECT_GT(found->times, 5);
-    EXPECT_FALSE(found->is_angle);
+    EXPECT_EQ(found->units, &length_units);
 }
 
 TEST(EarlierEstimate, KeepsMarkersWhereTheBoardWasMovedSince) {

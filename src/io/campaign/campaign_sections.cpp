@@ -27,6 +27,11 @@ std::string plausible_amount(const Unit& unit, double largest) {
                        unit.name);
 }
 
+bool is_true(const YamlMap& map, std::string_view key) {
+    const auto value = map.find(key);
+    return value && value->boolean();
+}
+
 Isometry3d read_frame(const YamlMap& map) {
     Isometry3d frame = Isometry3d::Identity();
     frame.linear() = rotation_from_rpy(map.require_measure("rpy").vector_to_si());

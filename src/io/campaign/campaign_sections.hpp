@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "io/format/yaml_reader.hpp"
 #include "posewise/io/campaign_file.hpp"
@@ -55,6 +56,9 @@ struct ControllerSection {
     std::string maker = "";  ///< empty: not stated
 };
 ControllerSection read_controller(const YamlValue& controller, const Chain& robot);
+
+/// Whether such a key is there and says so.
+bool is_true(const YamlMap& map, std::string_view key);
 
 /// Position and `rpy` of a frame.
 Isometry3d read_frame(const YamlMap& map);

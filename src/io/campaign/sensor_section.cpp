@@ -91,12 +91,6 @@ PointNoise read_noise(const YamlValue& value, const YamlMap& sensor) {
     return axes;
 }
 
-/// Whether such a key is there and says so.
-bool is_true(const YamlMap& map, std::string_view key) {
-    const auto value = map.find(key);
-    return value && value->boolean();
-}
-
 /// Standard deviation of a sensor that returns lengths.
 double read_sigma(const YamlMap& sensor) { return read_positive(sensor.require_measure("sigma")); }
 
