@@ -53,7 +53,7 @@ TEST_F(ProgramCommand, WritesWhatIsReadBackForEveryController) {
                "{joints: [-q1, q2 - 90 deg, 90 deg - q3 + q2, -q4, q5, -q6], pulses_per_deg: "
                "[1341.38, 1907.67, 1592.89, 1022.86, 980.24, 454.75]}");
     const std::pair<const char*, const char*> programs[] = {
-        {"fanuc", "CELL.LS"},   {"kuka", "cell.src"},    {"abb", "cell.mod"},
+        {"fanuc", "CELL.LS"},   {"kuka", "poses.src"},   {"abb", "cell.mod"},
         {"ur", "cell.script"},  {"yaskawa", "CELL.JBI"}, {"staubli", "cell"},
         {"ros2", "goals.yaml"}, {"csv", "cell.csv"}};
     for (const auto& [controller, file] : programs) {

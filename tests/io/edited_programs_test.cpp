@@ -236,7 +236,7 @@ TEST(EditedPrograms, AreRefusedWhereMovesMayBePassedOver) {
         "moves within 'IF'");
     expect_refused(Edited(Fanuc).replace("  !p1 ;", "  END ;"),
                    "moves after line 11, 'END', which leaves");
-    expect_refused(Edited(Kuka).replace("; p1", "GOTO there"), "cell.src:11:1" + jumps);
+    expect_refused(Edited(Kuka).replace("; p1", "GOTO there"), "poses.src:11:1" + jumps);
     expect_refused(Edited(Kuka).replace("; p1", "IF $IN[1] THEN").replace("; via", "ENDIF"),
                    "within 'IF'");
     expect_refused(Edited(Kuka).replace("; p1", "LOOP").replace("; via", "ENDLOOP"),
@@ -277,7 +277,7 @@ TEST(EditedPrograms, MoveNoAxisThatThePlanDoesNotKnow) {
     using enum ProgramFormat;
     expect_refused(
         Edited(Kuka).replace("}\n; p1", ",E1 120.5}\n; p1"),
-        "cell.src:10:1: has 'E1 120.5', an axis that is not of the robot's joints; must be 0");
+        "poses.src:10:1: has 'E1 120.5', an axis that is not of the robot's joints; must be 0");
     EXPECT_EQ(Edited(Kuka).replace("}\n; p1", ",E1 0.0,E2 0}\n; p1").labels().size(), 6U);
     expect_refused(Edited(Abb).replace("[9E9,", "[35.5,"), "moves an external axis to 35.5");
     EXPECT_EQ(Edited(Abb).replace("[9E9,9E9,", "[9E+09,0,").labels().size(), 6U);

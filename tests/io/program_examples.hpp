@@ -18,7 +18,7 @@ inline std::string file_of(ProgramFormat format) {
         case ProgramFormat::Fanuc:
             return "CELL.LS";
         case ProgramFormat::Kuka:
-            return "cell.src";
+            return "poses.src";
         case ProgramFormat::Abb:
             return "cell.mod";
         case ProgramFormat::Ur:

@@ -225,7 +225,7 @@ TEST(ProgramTargets, AreRefusedWhereTheyCannotBeUsed) {
               std::string::npos);
     EXPECT_NE(Written(ProgramFormat::Kuka, "PTP {A1 1e9,A2 1,A3 1,A4 1,A5 1,A6 1}\nEND\n")
                   .error()
-                  .find("cell.src:1:9: has 1e+09 for joint 1, which no robot reaches"),
+                  .find("poses.src:1:9: has 1e+09 for joint 1, which no robot reaches"),
               std::string::npos);
     EXPECT_NE(Written(ProgramFormat::Staubli, "").error().find("must be fanuc, kuka, abb or ur"),
               std::string::npos);
@@ -314,7 +314,7 @@ TEST(ProgramTargets, OfSpoiltStatementsAreRefused) {
     const std::string axes = "{A1 1,A2 2,A3 3,A4 4,A5 5,A6 6";
     const std::string kuka = "PTP " + axes + "}\nEND\n";
     expect(ProgramFormat::Kuka, "PPT " + axes + "}\n" + kuka, slip);
-    expect(ProgramFormat::Kuka, "PTP " + axes + "\n" + kuka, "cell.src:1:1: has no } at its end");
+    expect(ProgramFormat::Kuka, "PTP " + axes + "\n" + kuka, "poses.src:1:1: has no } at its end");
     expect(ProgramFormat::Kuka, "LIN {X 1,Y 2\n" + kuka, "has no } at its end");
     EXPECT_EQ(Written(ProgramFormat::Kuka, "SPTP " + axes + "} C_PTP ; {A1\n" + kuka).error(),
               "no error");

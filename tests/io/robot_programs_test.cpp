@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cstdlib>
 #include <set>
+#include <tuple>
 
 #include "io/format/atomic_file.hpp"
 #include "program_examples.hpp"
@@ -171,19 +172,116 @@ TEST(PoseLabels, AreLegalAndDistinctForHostileNames) {
               (std::vector<std::string>{"p1", "v1", "17", "P1_2", "p_home"}));
 }
 
+/// As the makers have it, typed here.
+std::size_t longest_name_of(ProgramFormat format) {
+    switch (format) {
+        case ProgramFormat::Staubli:
+            return 15;
+        case ProgramFormat::Kuka:
+            return 20;  // 24 less "_123"
+        case ProgramFormat::Abb:
+            return 28;  // 32 less "_run"
+        default:
+            return 32;
+    }
+}
+
+/// Words that a controller has already, typed here.
+std::vector<std::string> taken_names_of(ProgramFormat format) {
+    switch (format) {
+        case ProgramFormat::Fanuc:
+            return {"CON", "aux", "NUL"};
+        case ProgramFormat::Kuka:
+            return {"CELL", "cell", "SPS",  "P00",   "IR_STOPM", "BAS",   "PTP",  "SPTP",   "LIN",
+                    "HALT", "WAIT", "AXIS", "XHOME", "E6POS",    "FRAME", "TRUE", "SPLINE", "end"};
+        case ProgramFormat::Abb:
+            return {"tool0",     "wobj0", "load0", "fine",  "z10",      "z200",
+                    "v1000",     "vmax",  "v5",    "MoveL", "MoveJ",    "movec",
+                    "SetDO",     "Stop",  "main",  "slow",  "WaitTime", "jointtarget",
+                    "robtarget", "Offs",  "pi",    "num",   "TPWrite"};
+        case ProgramFormat::Ur:
+            return {"movej",
+                    "movel",
+                    "movep",
+                    "movec",
+                    "servoj",
+                    "speedj",
+                    "speedl",
+                    "set_digital_out",
+                    "sleep",
+                    "popup",
+                    "textmsg",
+                    "get_digital_in",
+                    "sync",
+                    "stopj",
+                    "set_tcp",
+                    "set_payload",
+                    "get_forward_kin",
+                    "pose_trans",
+                    "force",
+                    "norm",
+                    "socket_open",
+                    "thread",
+                    "end",
+                    "True",
+                    "global",
+                    "set_standard_digital_out"};
+        case ProgramFormat::Staubli:
+            return {"start", "stop", "begin", "while", "flange", "world"};
+        default:
+            return {};
+    }
+}
+
 TEST(ProgramNames, AreLegalForHostileFiles) {
     for (const ProgramFormat format : all_formats) {
+        const std::vector<std::string> taken = taken_names_of(format);
+        std::size_t longest = 0;
         for (Index i = 0; i < 10000; ++i) {
             RandomStream stream(9, static_cast<std::uint64_t>(i));
             const std::string name = legal_program_name(format, hostile_name(stream));
-            ASSERT_TRUE(!name.empty() && name.size() <= 32 && is_plain(name)) << name;
+            ASSERT_TRUE(!name.empty() && is_plain(name)) << name;
+            ASSERT_LE(name.size(), longest_name_of(format)) << name;
+            longest = std::max(longest, name.size());
             ASSERT_TRUE(std::isalpha(static_cast<unsigned char>(name[0])) != 0) << name;
             ASSERT_EQ(legal_program_name(format, name), name);
+            ASSERT_TRUE(std::ranges::none_of(taken, [&](const std::string& word) {
+                return lower(word) == lower(name);
+            })) << name;
         }
+        EXPECT_EQ(longest, longest_name_of(format)) << program_format_name(format);
     }
     EXPECT_EQ(legal_program_name(ProgramFormat::Fanuc, "my cell"), "MY_CELL");
-    EXPECT_EQ(legal_program_name(ProgramFormat::Kuka, "end"), "p_end");
     EXPECT_EQ(legal_program_name(ProgramFormat::Staubli, "a_name_of_over_15"), "a_name_of_over_");
+}
+
+TEST(ProgramNames, AreNoneThatTheControllerHasAlready) {
+    for (const ProgramFormat format : all_formats) {
+        for (const std::string& word : taken_names_of(format)) {
+            const std::string prefix = format == ProgramFormat::Fanuc ? "P_" : "p_";
+            const std::string name = legal_program_name(format, word);
+            EXPECT_EQ(lower(name), "p_" + lower(word)) << program_format_name(format);
+            EXPECT_TRUE(name.starts_with(prefix)) << name;
+        }
+    }
+    EXPECT_EQ(legal_program_name(ProgramFormat::Abb, "tool0"), "p_tool0");
+    EXPECT_EQ(legal_program_name(ProgramFormat::Abb, "tool1"), "tool1");
+    const TemporaryFolder folder;
+    const CampaignFile campaign = cell_with(controller_of(ProgramFormat::Kuka));
+    const RobotProgram program = cell_program(campaign.controller);
+    const std::string message = input_error_of([&] {
+        write_robot_program(folder.path("cell.src"), ProgramFormat::Kuka, program, "", campaign,
+                            {});
+    });
+    EXPECT_NE(message.find("p_cell.src"), std::string::npos) << message;
+    // The file of these two is free, the routine in it is called otherwise.
+    for (const auto& [file, format, begin] :
+         {std::tuple{"movel.script", ProgramFormat::Ur, "def p_movel():\n"},
+          std::tuple{"tool0.mod", ProgramFormat::Abb, "MODULE p_tool0\r\n"}}) {
+        write_robot_program(folder.path(file), format, program, "", campaign, {});
+        EXPECT_TRUE(detail::read_file(folder.path(file)).starts_with(begin)) << file;
+    }
+    EXPECT_EQ(folder.file_count(), 2U);
 }
 
 // ---- What is not written ----
@@ -253,7 +351,7 @@ TEST(RobotPrograms, NameThePartsOfALongerOneThatAreLeft) {
     const RobotProgram small = cell_program(campaign.controller);
     RobotProgram large = small;
     while (large.stops.size() < 1000) large.stops.push_back(small.stops[1]);
-    const std::string path = folder.path("cell.src");
+    const std::string path = folder.path("poses.src");
     const auto stale = [&](const RobotProgram& program) {
         return stale_program_files(path, ProgramFormat::Kuka, program);
     };
@@ -261,8 +359,8 @@ TEST(RobotPrograms, NameThePartsOfALongerOneThatAreLeft) {
     write_robot_program(path, ProgramFormat::Kuka, large, "", campaign, {});
     EXPECT_TRUE(stale(large).empty());
     EXPECT_EQ(stale(small),
-              (std::vector<std::string>{folder.path("cell_1.src"), folder.path("cell_2.src"),
-                                        folder.path("cell_3.src")}));
+              (std::vector<std::string>{folder.path("poses_1.src"), folder.path("poses_2.src"),
+                                        folder.path("poses_3.src")}));
 }
 
 TEST(RobotPrograms, HaveNoJointWhereNoRobotIs) {

@@ -6,6 +6,7 @@
 #include "core/text.hpp"
 #include "io/format/text.hpp"
 #include "program_stops.hpp"
+#include "reserved_words.hpp"
 
 /// ABB RAPID modules (.mod), whose lines end in CR LF.
 namespace posewise::detail {
@@ -154,12 +155,7 @@ const ProgramKind& abb_program() {
          .decimals = 4,
          .has_program_name = false,
          .longest_name = 28,
-         .words = "ALIAS AND BACKWARD CASE CONNECT CONST DEFAULT DIV DO ELSE ELSEIF "
-                  "ENDFOR ENDFUNC ENDIF ENDMODULE ENDPROC ENDRECORD ENDTEST ENDTRAP "
-                  "ENDWHILE ERROR EXIT FALSE FOR FROM FUNC GOTO IF INOUT LOCAL MOD MODULE "
-                  "NOSTEPIN NOT NOVIEW OR PERS PROC RAISE READONLY RECORD RETRY RETURN "
-                  "STEP SYSMODULE TASK TEST THEN TO TRAP TRUE TRYNEXT UNDO VAR VIEWONLY "
-                  "WHILE WITH XOR main user base",
+         .words = rapid_words,
          .flow = {.routines = "PROC FUNC TRAP",
                   .opens = "IF FOR WHILE TEST",
                   .closes = "ENDPROC ENDFUNC ENDTRAP ENDIF ENDFOR ENDWHILE ENDTEST",

@@ -6,6 +6,7 @@
 #include "core/text.hpp"
 #include "io/format/text.hpp"
 #include "program_stops.hpp"
+#include "reserved_words.hpp"
 
 /// KUKA KRL (.src, .dat).
 namespace posewise::detail {
@@ -205,12 +206,7 @@ const ProgramKind& kuka_program() {
         {.ending = ".src",
          .decimals = 5,
          .longest_name = 20,
-         .words = "ANIN ANOUT BRAKE CASE CCLOSE CHAR CIRC CONST DECL DEF DEFAULT DEFDAT "
-                  "DEFFCT DO ELSE END ENDDAT ENDFCT ENDFOR ENDIF ENDLOOP ENDSWITCH "
-                  "ENDWHILE ENUM EXIT EXT EXTFCT FALSE FOR GLOBAL GOTO HALT IF IMPORT INT "
-                  "INTERRUPT IS LIN LOOP BAS BOOL CONTINUE PTP PULSE REAL REPEAT RETURN "
-                  "SIGNAL STRUC SWITCH THEN TO TRIGGER TRUE UNTIL WAIT WHILE AND OR NOT "
-                  "EXOR B_AND B_OR",
+         .words = krl_words,
          .flow = {.routines = "DEF DEFFCT",
                   .opens = "IF FOR WHILE LOOP REPEAT SWITCH",
                   .closes = "END ENDFCT ENDIF ENDFOR ENDWHILE ENDLOOP UNTIL ENDSWITCH",

@@ -65,6 +65,7 @@ std::string legal_name(std::string_view text, std::size_t longest, bool is_upper
         name += is_legal ? (is_upper ? upper_case(letter) : letter) : '_';
     }
     name.erase(0, std::min(name.find_first_not_of('_'), name.size()));
+    name = name.substr(0, longest);
     const bool has_letter = !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) != 0;
     if (!has_letter || is_word(name, words)) name.insert(0, is_upper ? "P_" : "p_");
     return name.substr(0, longest);

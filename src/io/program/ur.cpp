@@ -3,6 +3,7 @@
 #include "core/text.hpp"
 #include "io/format/text.hpp"
 #include "program_stops.hpp"
+#include "reserved_words.hpp"
 
 /// Universal Robots URScript (.script).
 namespace posewise::detail {
@@ -149,9 +150,7 @@ const ProgramKind& ur_program() {
          .decimals = 6,
          .is_in_radians = true,
          .has_program_name = false,
-         .words = "and break continue def elif else end enter_critical exit_critical "
-                  "False global halt if join kill local not or pass return run sec thread "
-                  "True while xor movej sleep popup textmsg sync",
+         .words = urscript_words,
          .flow = {.routines = "def sec",
                   .opens = "if while thread switch",
                   .closes = "end",
