@@ -409,3 +409,51 @@ TEST(RobotPrograms, NeedSixJointsButForRosAndCsv) {
 
 }  // namespace
 }  // namespace posewise::io
+/// The times of all waits in a program, s.
+std::vector<double> waits_in(const std::string& text, const std::string& word) {
+    std::vector<double> waits;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+        waits.push_back(std::strtod(text.c_str() + at + word.size(), nullptr));
+    }
+    return waits;
+}
+
+TEST(RobotPrograms, WaitAtLeastAsLongAsTheyAreTold) {
+    // As far as the makers' largest times are known, typed here; 0: none is.
+    struct Waiting {
+        ProgramFormat format;
+        std::string word;
+        double longest;
+    };
+    const Waiting makers[] = {
+        {ProgramFormat::Fanuc, "  WAIT ", 327.67}, {ProgramFormat::Yaskawa, "TIMER T=", 655.35},
+        {ProgramFormat::Kuka, "WAIT SEC ", 0},     {ProgramFormat::Abb, "WaitTime \\InPos,", 0},
+        {ProgramFormat::Ur, "sleep(", 0},          {ProgramFormat::Staubli, "delay(", 0},
+        {ProgramFormat::Ros2, "dwell_s: ", 0}};
+    const TemporaryFolder folder;
+    const CampaignFile campaign = cell_with(reversed_joints);
+    for (const auto& [format, word, longest] : makers) {
+        for (const double dwell :
+             {1e-4, 0.001, 0.07, 2.0, 327.67, 327.68, 655.36, 1e4, 123456.789}) {
+            RobotProgram program = cell_program(campaign.controller);
+            program.stops = {program.stops[1]};
+            program.dwell = dwell;
+            const std::string path = folder.path(file_of(format));
+            write_robot_program(path, format, program, "", campaign, {});
+            const std::string file = format == ProgramFormat::Staubli ? path + "/start.pgx" : path;
+            const std::string text = detail::read_file(file);
+            double sum = 0;
+            for (const double wait : waits_in(text, word)) {
+                EXPECT_GT(wait, 0) << text;
+                EXPECT_LE(wait, longest > 0 ? longest : 1e9);
+                sum += wait;
+            }
+            const double step = longest > 0 ? 0.01 : 0.001;
+            EXPECT_GE(sum, dwell - 1e-6 * step) << program_format_name(format);
+            EXPECT_LT(sum, dwell + step) << program_format_name(format);
+            EXPECT_EQ(text.find("e+0"), std::string::npos);
+            EXPECT_EQ(read_robot_program(path, format, campaign.controller).size(), 1U);
+        }
+    }
+}
+

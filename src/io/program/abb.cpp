@@ -31,8 +31,8 @@ std::string abb_stop(const io::RobotProgram& program, const io::ProgramStop& sto
         "    ! {}\n    MoveAbsJ [[{}],[9E9,9E9,9E9,9E9,9E9,9E9]]\\NoEOffs,slow,fine,tool0;\n",
         stop.label, joints_text(rules, program.joints, stop.joints, ","));
     if (!stop.is_measured) return text;
-    if (const double dwell = dwell_of(program, stop); dwell > 0) {
-        text += fmt::format("    WaitTime \\InPos,{};\n", seconds_text(dwell));
+    for (const double wait : waits_of(rules, program, stop)) {
+        text += fmt::format("    WaitTime \\InPos,{};\n", seconds_text(wait));
     }
     text += fmt::format("    TPWrite \"{}\";\n", stop.label);
     if (program.handshake == io::Handshake::Pause) text += "    Stop;\n";

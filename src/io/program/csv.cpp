@@ -40,7 +40,7 @@ std::vector<FileContent> csv_files(const std::string& path, const io::RobotProgr
     for (const io::ProgramStop& stop : program.stops) {
         fmt::format_to(std::back_inserter(text), "{},{},{}\n", stop.label,
                        joints_text(rules, program.joints, stop.joints, ","),
-                       seconds_text(stop.is_measured ? dwell_of(program, stop) : 0));
+                       seconds_text(dwell_of(rules, program, stop)));
     }
     return {{path, text}};
 }

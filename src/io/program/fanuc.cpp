@@ -35,8 +35,8 @@ void add_fanuc_stop(const io::RobotProgram& program, const io::ProgramStop& stop
     body.add(fmt::format("  !{}", stop.label));
     body.add(fmt::format("J P[{}] {}% FINE   ", number, program.speed_percent));
     if (!stop.is_measured) return;
-    if (const double dwell = dwell_of(program, stop); dwell > 0) {
-        body.add(fmt::format("  WAIT {:6.2f}(sec)", dwell));
+    for (const double wait : waits_of(fanuc_program().rules, program, stop)) {
+        body.add(fmt::format("  WAIT {:6.2f}(sec)", wait));
     }
     if (program.handshake == io::Handshake::Pause) body.add("  PAUSE");
     if (program.handshake == io::Handshake::Io) {
@@ -269,6 +269,8 @@ const ProgramKind& fanuc_program() {
                                    .longest_name = 32,
                                    .is_upper = true,
                                    .words = "CON PRN AUX NUL COM1 LPT1",
+                                   .wait_step = 0.01,
+                                   .longest_wait = 327.67,  // 2^15 - 1 steps
                                    .flow = {.opens = "IF FOR",
                                             .closes = "ENDIF ENDFOR",
                                             .jumps = "JMP TIMEOUT",

@@ -26,8 +26,8 @@ std::string kuka_stop(const io::RobotProgram& program, const io::ProgramStop& st
     }
     text += "}\n";
     if (!stop.is_measured) return text;
-    if (const double dwell = dwell_of(program, stop); dwell > 0) {
-        text += fmt::format("WAIT SEC {}\n", seconds_text(dwell));
+    for (const double wait : waits_of(rules, program, stop)) {
+        text += fmt::format("WAIT SEC {}\n", seconds_text(wait));
     }
     if (program.handshake == io::Handshake::Pause) text += "HALT\n";
     if (program.handshake == io::Handshake::Io) {

@@ -111,12 +111,28 @@ std::string joints_text(const ProgramRules& rules, const ControllerJoints& joint
 }
 
 std::string seconds_text(double seconds) {
-    const std::string text = fmt::format("{:g}", seconds);
-    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+    std::string text = fmt::format("{:.3f}", seconds);
+    while (text.ends_with('0') && !text.ends_with(".0")) text.pop_back();
+    return text;
 }
 
-double dwell_of(const io::RobotProgram& program, const io::ProgramStop& stop) {
-    return program.settle + program.dwell * static_cast<double>(stop.samples);
+double dwell_of(const ProgramRules& rules, const io::RobotProgram& program,
+                const io::ProgramStop& stop) {
+    constexpr double rounding = 1e-6;  // of a step: 0.07 s are 7 steps of 0.01 s
+    if (!stop.is_measured) return 0;
+    const double time = program.settle + program.dwell * static_cast<double>(stop.samples);
+    return std::ceil(time / rules.wait_step - rounding) * rules.wait_step;
+}
+
+std::vector<double> waits_of(const ProgramRules& rules, const io::RobotProgram& program,
+                             const io::ProgramStop& stop) {
+    std::vector<double> waits;
+    double rest = dwell_of(rules, program, stop);
+    for (; rest > rules.longest_wait; rest -= rules.longest_wait) {
+        waits.push_back(rules.longest_wait);
+    }
+    if (rest > rules.wait_step / 2) waits.push_back(rest);
+    return waits;
 }
 
 bool TextLine::begins_with(std::string_view word) const {

@@ -35,6 +35,8 @@ struct ProgramRules {
     std::string_view words = "";  ///< that name no program, separated by blanks
     bool has_pause = true;
     bool has_io = true;
+    double wait_step = 0.001;   ///< of times at which the robot waits, s
+    double longest_wait = 1e9;  ///< of one statement, s
     FlowWords flow = {};
     std::string_view waits = "";     ///< begin statements at which the robot waits
     std::string_view messages = "";  ///< begin statements that show the pose's label
@@ -91,10 +93,14 @@ std::string joint_text(const ProgramRules& rules, Motion motion, double si);
 /// All of a stop, separated.
 std::string joints_text(const ProgramRules& rules, const ControllerJoints& joints,
                         const VectorXd& values, std::string_view separator);
-/// 2.5 as "2.5", 2 as "2.0".
+/// 2.5 as "2.5", 2 as "2.0"; 3 decimals at most.
 std::string seconds_text(double seconds);
-/// How long a measured stop lasts.
-double dwell_of(const io::RobotProgram& program, const io::ProgramStop& stop);
+/// How long the robot waits at a stop, rounded up to steps of the format; 0: not at all.
+double dwell_of(const ProgramRules& rules, const io::RobotProgram& program,
+                const io::ProgramStop& stop);
+/// The same as times of statements one after the other, none over the longest.
+std::vector<double> waits_of(const ProgramRules& rules, const io::RobotProgram& program,
+                             const io::ProgramStop& stop);
 
 /// Where a text is from, line by line.
 struct TextLine {

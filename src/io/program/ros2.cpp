@@ -40,7 +40,7 @@ std::string ros_goal(const io::RobotProgram& program, std::size_t number) {
         "  - name: \"{}\"\n    dwell_s: {}\n    trajectory:\n      joint_names: [{}]\n      "
         "points:\n        - positions: [{}]\n          velocities: [{}]\n          "
         "time_from_start: {{sec: {}, nanosec: {}}}\n",
-        stop.label, seconds_text(stop.is_measured ? dwell_of(program, stop) : 0),
+        stop.label, seconds_text(dwell_of(rules, program, stop)),
         fmt::join(program.joints.names(), ", "),
         joints_text(rules, program.joints, stop.joints, ", "),
         fmt::join(std::vector<std::string>(static_cast<std::size_t>(stop.joints.size()), "0.0"),

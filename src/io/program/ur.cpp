@@ -20,8 +20,8 @@ std::string ur_stop(const io::RobotProgram& program, const io::ProgramStop& stop
                     joints_text(rules, program.joints, stop.joints, ", "), acceleration,
                     joint_speed * static_cast<double>(program.speed_percent) / 100);
     if (!stop.is_measured) return text;
-    if (const double dwell = dwell_of(program, stop); dwell > 0) {
-        text += fmt::format("  sleep({})\n", seconds_text(dwell));
+    for (const double wait : waits_of(rules, program, stop)) {
+        text += fmt::format("  sleep({})\n", seconds_text(wait));
     }
     if (program.handshake == io::Handshake::Pause) {
         return text +
@@ -145,25 +145,24 @@ std::vector<io::ProgramStop> read_ur(const std::string& path, const ControllerJo
 }  // namespace
 
 const ProgramKind& ur_program() {
-    static const ProgramKind kind{
-        {.ending = ".script",
-         .decimals = 6,
-         .is_in_radians = true,
-         .has_program_name = false,
-         .words = urscript_words,
-         .flow = {.routines = "def sec",
-                  .opens = "if while thread switch",
-                  .closes = "end",
-                  .leaves = "return halt",
-                  .has_then = false},
-         .waits = "sleep popup",
-         .messages = "textmsg popup",
-         .moves = "movej movel movep movec servoj speedj speedl",
-         .target = "([",
-         .target_numbers = 6},
-        &ur_files,
-        &read_ur,
-        &check_ur};
+    static const ProgramKind kind{{.ending = ".script",
+                                   .decimals = 6,
+                                   .is_in_radians = true,
+                                   .has_program_name = false,
+                                   .words = urscript_words,
+                                   .flow = {.routines = "def sec",
+                                            .opens = "if while thread switch",
+                                            .closes = "end",
+                                            .leaves = "return halt",
+                                            .has_then = false},
+                                   .waits = "sleep popup",
+                                   .messages = "textmsg popup",
+                                   .moves = "movej movel movep movec servoj speedj speedl",
+                                   .target = "([",
+                                   .target_numbers = 6},
+                                  &ur_files,
+                                  &read_ur,
+                                  &check_ur};
     return kind;
 }
 

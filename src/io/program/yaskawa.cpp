@@ -37,8 +37,8 @@ std::string yaskawa_stop(const io::RobotProgram& program, const io::ProgramStop&
     std::string text = fmt::format("'{}\r\nMOVJ C{:05} VJ={:.2f} PL=0\r\n", stop.label, number,
                                    static_cast<double>(program.speed_percent));
     if (!stop.is_measured) return text;
-    if (const double dwell = dwell_of(program, stop); dwell > 0) {
-        text += fmt::format("TIMER T={:.2f}\r\n", dwell);
+    for (const double wait : waits_of(yaskawa_program().rules, program, stop)) {
+        text += fmt::format("TIMER T={:.2f}\r\n", wait);
     }
     if (program.handshake == io::Handshake::Pause) text += "PAUSE\r\n";
     if (program.handshake == io::Handshake::Io) {
@@ -164,6 +164,8 @@ const ProgramKind& yaskawa_program() {
                                    .decimals = 0,
                                    .longest_name = 32,
                                    .is_upper = true,
+                                   .wait_step = 0.01,
+                                   .longest_wait = 655.35,  // 2^16 - 1 steps
                                    .flow = {.opens = "IFTHEN FOR WHILE SWITCH",
                                             .closes = "ENDIF NEXT ENDWHILE ENDSWITCH",
                                             .jumps = "JUMP",
