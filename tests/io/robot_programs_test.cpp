@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <functional>
+#include <numbers>
 #include <set>
 #include <tuple>
 
@@ -108,6 +111,134 @@ TEST(RobotPrograms, MoveTheFlangeWhereThePlanHasIt) {
         constexpr double reach = 3;  // m
         EXPECT_LT((planned.translation() - back.translation()).norm(), 2 * reach * steps.sum())
             << controller;
+    }
+}
+
+/// How one maker's controller counts, typed here: its section of the campaign, the same as
+/// formulas in degrees and back, and how its file states the numbers.
+struct Family {
+    ProgramFormat format;
+    std::string section;
+    std::function<std::vector<double>(const std::vector<double>&)> to_controller;
+    std::function<std::vector<double>(const std::vector<double>&)> to_model;
+    std::string file;           ///< beside or in what is written
+    std::string begin;          ///< what stands before the first number of a position
+    std::string between;        ///< letters before each further number, without their digit
+    std::vector<double> units;  ///< in which numbers are, of a degree
+    double step;                ///< of the last digit, in these units
+};
+
+const std::vector<double> all_degrees(6, 1.0);
+const std::vector<double> all_radians(6, 180 / std::numbers::pi);
+
+std::vector<Family> typed_families() {
+    using V = std::vector<double>;
+    const V pulse{1 / 1341.38, 1 / 1907.67, 1 / 1592.89, 1 / 1022.86, 1 / 980.24, 1 / 454.75};
+    return {
+        {ProgramFormat::Fanuc, "{joints: [q1, q2, q3 - q2, -q4, q5, -q6]}",
+         [](const V& q) { return V{q[0], q[1], q[2] - q[1], -q[3], q[4], -q[5]}; },
+         [](const V& c) { return V{c[0], c[1], c[2] + c[1], -c[3], c[4], -c[5]}; }, "CELL.LS",
+         "J1=", "J", all_degrees, 1e-3},
+        {ProgramFormat::Kuka, "{joints: [-q1, q2 - 90 deg, 90 deg - q3 + q2, -q4, q5, -q6]}",
+         [](const V& q) { return V{-q[0], q[1] - 90, 90 - q[2] + q[1], -q[3], q[4], -q[5]}; },
+         [](const V& c) { return V{-c[0], c[1] + 90, 180 + c[1] - c[2], -c[3], c[4], -c[5]}; },
+         "poses.src", "{A1", "A", all_degrees, 1e-5},
+        {ProgramFormat::Abb, "{joints: [q1, q2, q2 - q3, -q4, q5, -q6]}",
+         [](const V& q) { return V{q[0], q[1], q[1] - q[2], -q[3], q[4], -q[5]}; },
+         [](const V& c) { return V{c[0], c[1], c[1] - c[2], -c[3], c[4], -c[5]}; }, "cell.mod",
+         "MoveAbsJ [[", "", all_degrees, 1e-4},
+        {ProgramFormat::Ur, "{joints: [-q1, q2 - 90 deg, -q3, q4 + q3, q5, 90 deg - q6]}",
+         [](const V& q) { return V{-q[0], q[1] - 90, -q[2], q[3] + q[2], q[4], 90 - q[5]}; },
+         [](const V& c) { return V{-c[0], c[1] + 90, -c[2], c[3] + c[2], c[4], 90 - c[5]}; },
+         "cell.script", "movej([", "", all_radians, 1e-6},
+        {ProgramFormat::Yaskawa,
+         "{joints: [q1, q2 - 90 deg, q3 + q2, -q4, -q5, q6 - q5], " + example_pulses + "}",
+         [](const V& q) { return V{q[0], q[1] - 90, q[2] + q[1], -q[3], -q[4], q[5] - q[4]}; },
+         [](const V& c) { return V{c[0], c[1] + 90, c[2] - c[1] - 90, -c[3], -c[4], c[5] - c[4]}; },
+         "CELL.JBI", "C0000?=", "", pulse, 1},
+        {ProgramFormat::Staubli, "{joints: [-q1, q2, -q3 - 0.5*q2, q4, -q5, q6 - 0.5*q5]}",
+         [](const V& q) {
+             return V{-q[0], q[1], -q[2] - 0.5 * q[1], q[3], -q[4], q[5] - 0.5 * q[4]};
+         },
+         [](const V& c) {
+             return V{-c[0], c[1], -c[2] - 0.5 * c[1], c[3], -c[4], c[5] - 0.5 * c[4]};
+         },
+         "cell/cell.dtx", " j1=\"", "j", all_degrees, 1e-5},
+    };
+}
+
+/// Where `words` begin in the text, '?' for any letter.
+std::size_t find_words(const std::string& text, const std::string& words, std::size_t from) {
+    const auto is_alike = [](char a, char b) { return b == '?' || a == b; };
+    const auto found = std::search(text.begin() + static_cast<std::ptrdiff_t>(from), text.end(),
+                                   words.begin(), words.end(), is_alike);
+    return static_cast<std::size_t>(found - text.begin());
+}
+
+/// The numbers of all positions in a file, in its order, from its text alone.
+std::vector<std::vector<double>> positions_in(const std::string& text, const Family& family) {
+    std::vector<std::vector<double>> positions;
+    for (std::size_t at = find_words(text, family.begin, 0); at < text.size();
+         at = find_words(text, family.begin, at)) {
+        at += family.begin.size();
+        std::vector<double> numbers;
+        for (int joint = 1; joint <= 6; ++joint) {
+            if (joint > 1 && !family.between.empty()) {
+                at = text.find(family.between + std::to_string(joint), at) + family.between.size() +
+                     1;
+            }
+            at = text.find_first_of("-0123456789", at);
+            char* end = nullptr;
+            numbers.push_back(std::strtod(text.c_str() + at, &end));
+            at = static_cast<std::size_t>(end - text.c_str());
+        }
+        positions.push_back(numbers);
+    }
+    return positions;
+}
+
+TEST(RobotPrograms, StateSignsAndCouplingsOfSixFamilies) {
+    const TemporaryFolder folder;
+    RandomStream stream(11, 0);
+    std::vector<std::vector<double>> poses;
+    for (int k = 0; k < 10; ++k) {
+        const VectorXd q = random_vector(stream, 6, 1.5) * (180 / std::numbers::pi);
+        poses.emplace_back(q.begin(), q.end());
+    }
+    const auto vector_of = [](const std::vector<double>& q) {
+        return VectorXd(Eigen::Map<const VectorXd>(q.data(), 6) * (std::numbers::pi / 180));
+    };
+    for (const Family& family : typed_families()) {
+        const CampaignFile campaign = cell_with(family.section);
+        RobotProgram program = cell_program(campaign.controller);
+        program.stops.clear();
+        for (std::size_t k = 0; k < poses.size(); ++k) {
+            program.stops.push_back(
+                stop_at(campaign.controller, fmt::format("p{}", k + 1), poses[k]));
+        }
+        write_robot_program(folder.path(file_of(family.format)), family.format, program, "",
+                            campaign, {});
+        const auto stated = positions_in(detail::read_file(folder.path(family.file)), family);
+        ASSERT_EQ(stated.size(), poses.size()) << family.file;
+        for (std::size_t k = 0; k < poses.size(); ++k) {
+            const std::vector<double> expected = family.to_controller(poses[k]);
+            std::vector<double> shown;
+            double turn = 0;  // by which rounding may turn the flange, rad
+            for (std::size_t j = 0; j < 6; ++j) {
+                const double half = 0.5 * family.step * family.units[j] + 1e-9;
+                shown.push_back(stated[k][j] * family.units[j]);
+                EXPECT_NEAR(shown[j], expected[j], half) << family.file << " joint " << j + 1;
+                turn += 2 * to_radians(half);  // couplings add joints
+            }
+            const auto flange = [&](const std::vector<double>& q) {
+                return campaign.robot.base_from_flange(
+                    vector_of(q), VectorXd::Zero(campaign.robot.parameter_count()));
+            };
+            const Isometry3d off = flange(poses[k]).inverse() * flange(family.to_model(shown));
+            constexpr double reach = 3;  // m
+            EXPECT_LT(off.translation().norm(), reach * turn) << family.file << ' ' << k;
+            EXPECT_LT(Eigen::AngleAxisd(off.linear()).angle(), turn) << family.file << ' ' << k;
+        }
     }
 }
 
@@ -311,6 +442,54 @@ TEST(RobotPrograms, AreSplitWhereAControllerNeedsIt) {
     EXPECT_EQ(folder.file_count(), 8U);
 }
 
+/// The times of all waits in a program, s.
+std::vector<double> waits_in(const std::string& text, const std::string& word) {
+    std::vector<double> waits;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+        waits.push_back(std::strtod(text.c_str() + at + word.size(), nullptr));
+    }
+    return waits;
+}
+
+TEST(RobotPrograms, WaitAtLeastAsLongAsTheyAreTold) {
+    // As far as the makers' largest times are known, typed here; 0: none is.
+    struct Waiting {
+        ProgramFormat format;
+        std::string word;
+        double longest;
+    };
+    const Waiting makers[] = {
+        {ProgramFormat::Fanuc, "  WAIT ", 327.67}, {ProgramFormat::Yaskawa, "TIMER T=", 655.35},
+        {ProgramFormat::Kuka, "WAIT SEC ", 0},     {ProgramFormat::Abb, "WaitTime \\InPos,", 0},
+        {ProgramFormat::Ur, "sleep(", 0},          {ProgramFormat::Staubli, "delay(", 0},
+        {ProgramFormat::Ros2, "dwell_s: ", 0}};
+    const TemporaryFolder folder;
+    const CampaignFile campaign = cell_with(reversed_joints);
+    for (const auto& [format, word, longest] : makers) {
+        for (const double dwell :
+             {1e-4, 0.001, 0.07, 2.0, 327.67, 327.68, 655.36, 1e4, 123456.789}) {
+            RobotProgram program = cell_program(campaign.controller);
+            program.stops = {program.stops[1]};
+            program.dwell = dwell;
+            const std::string path = folder.path(file_of(format));
+            write_robot_program(path, format, program, "", campaign, {});
+            const std::string file = format == ProgramFormat::Staubli ? path + "/start.pgx" : path;
+            const std::string text = detail::read_file(file);
+            double sum = 0;
+            for (const double wait : waits_in(text, word)) {
+                EXPECT_GT(wait, 0) << text;
+                EXPECT_LE(wait, longest > 0 ? longest : 1e9);
+                sum += wait;
+            }
+            const double step = longest > 0 ? 0.01 : 0.001;
+            EXPECT_GE(sum, dwell - 1e-6 * step) << program_format_name(format);
+            EXPECT_LT(sum, dwell + step) << program_format_name(format);
+            EXPECT_EQ(text.find("e+0"), std::string::npos);
+            EXPECT_EQ(read_robot_program(path, format, campaign.controller).size(), 1U);
+        }
+    }
+}
+
 TEST(RobotPrograms, AreRefusedWhereSomethingIsMissing) {
     const TemporaryFolder folder;
     const CampaignFile campaign = cell_with("{}");
@@ -409,51 +588,3 @@ TEST(RobotPrograms, NeedSixJointsButForRosAndCsv) {
 
 }  // namespace
 }  // namespace posewise::io
-/// The times of all waits in a program, s.
-std::vector<double> waits_in(const std::string& text, const std::string& word) {
-    std::vector<double> waits;
-    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
-        waits.push_back(std::strtod(text.c_str() + at + word.size(), nullptr));
-    }
-    return waits;
-}
-
-TEST(RobotPrograms, WaitAtLeastAsLongAsTheyAreTold) {
-    // As far as the makers' largest times are known, typed here; 0: none is.
-    struct Waiting {
-        ProgramFormat format;
-        std::string word;
-        double longest;
-    };
-    const Waiting makers[] = {
-        {ProgramFormat::Fanuc, "  WAIT ", 327.67}, {ProgramFormat::Yaskawa, "TIMER T=", 655.35},
-        {ProgramFormat::Kuka, "WAIT SEC ", 0},     {ProgramFormat::Abb, "WaitTime \\InPos,", 0},
-        {ProgramFormat::Ur, "sleep(", 0},          {ProgramFormat::Staubli, "delay(", 0},
-        {ProgramFormat::Ros2, "dwell_s: ", 0}};
-    const TemporaryFolder folder;
-    const CampaignFile campaign = cell_with(reversed_joints);
-    for (const auto& [format, word, longest] : makers) {
-        for (const double dwell :
-             {1e-4, 0.001, 0.07, 2.0, 327.67, 327.68, 655.36, 1e4, 123456.789}) {
-            RobotProgram program = cell_program(campaign.controller);
-            program.stops = {program.stops[1]};
-            program.dwell = dwell;
-            const std::string path = folder.path(file_of(format));
-            write_robot_program(path, format, program, "", campaign, {});
-            const std::string file = format == ProgramFormat::Staubli ? path + "/start.pgx" : path;
-            const std::string text = detail::read_file(file);
-            double sum = 0;
-            for (const double wait : waits_in(text, word)) {
-                EXPECT_GT(wait, 0) << text;
-                EXPECT_LE(wait, longest > 0 ? longest : 1e9);
-                sum += wait;
-            }
-            const double step = longest > 0 ? 0.01 : 0.001;
-            EXPECT_GE(sum, dwell - 1e-6 * step) << program_format_name(format);
-            EXPECT_LT(sum, dwell + step) << program_format_name(format);
-            EXPECT_EQ(text.find("e+0"), std::string::npos);
-            EXPECT_EQ(read_robot_program(path, format, campaign.controller).size(), 1U);
-        }
-    }
-}
-
