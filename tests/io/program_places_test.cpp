@@ -149,6 +149,102 @@ struct Cell {
     std::string path;
 };
 
+/// The place that the numbers in a file state, by the makers' definitions, typed here.
+Isometry3d place_in(const std::string& text, ProgramFormat format, const PlaceTarget& target) {
+    std::vector<double> n;
+    for (const auto& [begin, end] : target.values) {
+        n.push_back(std::stod(text.substr(begin, end - begin)));
+    }
+    const auto turn = [](double degrees, const Vector3d& axis) {
+        return Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis);
+    };
+    const auto about = [&](double z, double y, double x) {
+        return Eigen::Matrix3d(turn(z, Vector3d::UnitZ()) * turn(y, Vector3d::UnitY()) *
+                               turn(x, Vector3d::UnitX()));
+    };
+    Isometry3d place = Isometry3d::Identity();
+    place.translation() = (format == ProgramFormat::Ur ? 1 : 1e-3) * Vector3d(n[0], n[1], n[2]);
+    if (format == ProgramFormat::Fanuc) place.linear() = about(n[5], n[4], n[3]);  // W, P, R
+    if (format == ProgramFormat::Kuka) place.linear() = about(n[3], n[4], n[5]);   // A, B, C
+    if (format == ProgramFormat::Abb) {
+        place.linear() = Eigen::Quaterniond(n[3], n[4], n[5], n[6]).toRotationMatrix();
+    }
+    if (format == ProgramFormat::Ur) {
+        const Vector3d vector(n[3], n[4], n[5]);
+        place.linear() = Eigen::AngleAxisd(vector.norm(), vector.normalized()).toRotationMatrix();
+    }
+    return place;
+}
+
+/// By how much the digits of a place in such a file move what is 0.25 m off its origin, m.
+double rounding_of(ProgramFormat format) {
+    const double length = format == ProgramFormat::Kuka  ? 5e-9
+                          : format == ProgramFormat::Abb ? 5e-8
+                                                         : 5e-7;
+    const double angle = format == ProgramFormat::Fanuc  ? 5e-4 * std::numbers::pi / 180
+                         : format == ProgramFormat::Kuka ? 5e-6 * std::numbers::pi / 180
+                         : format == ProgramFormat::Abb  ? 1e-8
+                                                         : 5e-7;
+    return std::sqrt(3.0) * (length + 0.26 * angle);
+}
+
+/// Also where the correction may turn joints by so little that an error is left: what is claimed
+/// to be left is.
+TEST(ProgramPlaces, LeaveTheErrorThatTheCorrectionStates) {
+    for (const ProgramFormat format : place_formats) {
+        for (const double largest_change : {10.0, 0.001}) {  // deg
+            const Cell cell(format);
+            const Chain& robot = cell.campaign.robot;
+            const auto& controller = cell.campaign.controller;
+            const TargetProgram program = cell.read();
+            const RowMatrixXd nominal =
+                nominal_configurations(cell.campaign, cell.targets(program), cell.frames);
+            CorrectionOptions options;
+            options.largest_turn = to_radians(largest_change);
+            const CorrectedPoses corrected =
+                correct_poses(cell.campaign, cell.truth, nominal, {"a", "b", "c"},
+                              CorrectionBase::Estimate, options);
+            const std::vector<Isometry3d> places = corrected_targets(corrected, cell.frames);
+            std::vector<CorrectedPlace> replaced;
+            for (std::size_t k = 0; k < places.size(); ++k) {
+                replaced.push_back(
+                    {places[k],
+                     controller.to_controller(nominal.row(static_cast<Index>(k)).transpose()),
+                     controller.to_controller(corrected.corrections[k].joints)});
+            }
+            const std::string path = cell.folder.path(file_of(format));
+            write_program_targets(path, program, format, controller, {}, replaced);
+            const TargetProgram back = cell.read();
+            const RowMatrixXd sent =
+                nominal_configurations(cell.campaign, cell.targets(back), cell.frames);
+            const double rounding = rounding_of(format);
+            for (Index i = 0; i < sent.rows(); ++i) {
+                const auto k = static_cast<std::size_t>(i);
+                const Correction& one = corrected.corrections[k];
+                const Isometry3d stated = place_in(back.content, format, back.places[k]);
+                const Isometry3d tool = robot.base_from_flange(one.joints, no_errors(robot)) *
+                                        cell.frames.flange_from_tool;
+                const Isometry3d off = (cell.frames.base_from_frame * stated).inverse() * tool;
+                EXPECT_LT(off.translation().norm(), rounding) << program_format_name(format);
+                EXPECT_LT(Eigen::AngleAxisd(off.linear()).angle(), rounding / 0.26)
+                    << program_format_name(format);
+                const Vector3d wanted =
+                    robot.base_from_flange(nominal.row(i).transpose(), no_errors(robot))
+                        .translation();
+                const Vector3d reached =
+                    robot.base_from_flange(sent.row(i).transpose(), cell.truth.robot).translation();
+                EXPECT_NEAR((reached - wanted).norm(), one.residual.position, 1.2 * rounding)
+                    << program_format_name(format) << ' ' << i;
+                if (largest_change < 1) {
+                    EXPECT_GT(one.residual.position, 1e-5);
+                } else {
+                    EXPECT_LT(one.residual.position, 1e-9);
+                }
+            }
+        }
+    }
+}
+
 TEST(ProgramPlaces, BringARobotThatBendsWhereTheyAre) {
     for (const ProgramFormat format : place_formats) {
         const Cell cell(format);
