@@ -162,7 +162,8 @@ std::string describe_sums(const Cell& cell, const Chain& robot, const VectorXd& 
         const double clearance = interval_clearance(limits, amount);
         if (!(clearance < least)) continue;
         least = clearance;
-        text = describe_range(sum.name, motion_of(sum, robot), amount, limits.lower, limits.upper);
+        text = describe_range(sum.name, motion_of(sum, robot), amount + sum.offset,
+                              limits.lower + sum.offset, limits.upper + sum.offset);
     }
     return text;
 }

@@ -184,6 +184,41 @@ TEST_F(Correct, RoundsInwardsAtALimit) {
     run_well("correct " + fanuc_design + " e.json --poses corrected.script --for ur");
 }
 
+/// Stated by the pendant's name of the joint.
+TEST_F(Correct, NamesTargetsBeyondALimitOfAControllersJoint) {
+    const std::string design =
+        read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml") +
+        "\ncontroller: {joints: {J3: q3 - q2}}\n"
+        "cell: {joint_sums: {J3: {limits_deg: [-20.00002, 40.00002]}}}\n";
+    write_text("sum.yaml", design);
+    const std::string begin =
+        "/PROG  A\n/ATTR\n/MN\n   1:J P[1] 20% FINE ;\n/POS\nP[1]{\n   GP1:\n";
+    const auto program = [&](double j3) {
+        write_text("A.ls", begin + fmt::format("\tJ1= 5.000 deg, J2= 10.000 deg, J3= {:.3f} "
+                                               "deg,\n\tJ4= 20.000 deg, J5= -40.000 "
+                                               "deg, J6= 15.000 deg\n}};\n/END\n",
+                                               j3));
+        return run("correct sum.yaml e.json --poses A.ls --for fanuc -o c/A.ls");
+    };
+    std::filesystem::create_directory(folder_ / "c");
+    const Outcome inside = program(10);
+    EXPECT_EQ(inside.code, 0) << inside.err;
+    EXPECT_EQ(inside.err, "");
+    // What is beyond it, already or only once it is corrected, is named.
+    const Outcome beyond = program(45);
+    EXPECT_NE(beyond.err.find("1 of 1 configuration violates the campaign's cell: P[1] "
+                              "(joint_sums: 1)\n"),
+              std::string::npos)
+        << beyond.err;
+    const Outcome at_limit = program(40);
+    EXPECT_EQ(at_limit.code, 0) << at_limit.err;
+    const std::string corrected = text_of("c/A.ls");
+    EXPECT_GT(std::stod(corrected.substr(corrected.find("J3=") + 3)), 40.001) << corrected;
+    EXPECT_NE(at_limit.err.find("A.ls: once corrected, 1 of 1 configuration violates"),
+              std::string::npos)
+        << at_limit.err;
+}
+
 /// 60 deg are 1.0471976 rad: what was rounded beyond that is at the limit, more is refused.
 TEST_F(Correct, TakesATargetThatItsDigitsRoundBeyondALimit) {
     const auto corrected = [&](const std::string& q2) {

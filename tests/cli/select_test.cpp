@@ -49,6 +49,35 @@ TEST_F(Select, ChoosesFromConfigurationsThatWereNotMeasured) {
     run_well("verify q.plan.json");
 }
 
+/// By the pendant's name of the joint or as a sum: the same choice, from those that it allows.
+TEST_F(Select, KeepsLimitsOfAControllersJoint) {
+    std::string design = read_text(source_folder() + "/designs/fanuc_r2000ic_165f/campaign.yaml") +
+                         "\ncontroller: {joints: {J3: q3 - q2}}\n";
+    const auto chosen = [&](const std::string& sum) {
+        write_text("sum.yaml",
+                   design + "cell: {joint_sums: {" + sum + ": {limits_deg: [-40, 30]}}}\n");
+        run_well("select sum.yaml --random 200 -k 8 --starts 4 -o sum.json");
+        run_well("verify sum.json");
+        for (const auto& pose : plan("sum.json").at("poses")) {
+            const auto& q = pose.at("joints");
+            const double third =
+                (q.at("q3_rad").get<double>() - q.at("q2_rad").get<double>()) * 57.29577951308232;
+            EXPECT_GE(third, -40 - 1e-9);
+            EXPECT_LE(third, 30 + 1e-9);
+        }
+        return ids_of("sum.json");
+    };
+    EXPECT_EQ(chosen("J3"), chosen("q3 - q2"));
+    // Listed candidates that it forbids are not chosen.
+    write_text("q.csv",
+               "config,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n"
+               "a,10,20,-30,40,50,60\nb,-20,5,10,80,-60,10\nc,40,-40,-60,-80,90,120\n"
+               "d,-70,30,40,-10,30,-200\ne,60,-15,-5,150,-90,20\nf,0,50,-70,-120,70,-100\n"
+               "g,20,10,20,10,60,70\n");
+    run("select sum.yaml --candidates q.csv -k 5 -o listed.json");
+    EXPECT_EQ(ids_of("listed.json"), (std::vector<std::string>{"b", "c", "d", "e", "g"}));
+}
+
 TEST_F(Select, ReadsTheCampaignOnce) {
     const std::string plain = run_well("select " + input_ + "-k 8 --starts 1 -o one.json");
     const std::filesystem::path design =

@@ -1,10 +1,13 @@
 #include <gtest/gtest.h>
 
 #include "campaign_text.hpp"
+#include "io/format/atomic_file.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "support/places.hpp"
 #include "support/robots.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/urdf_text.hpp"
 
 // What a campaign says of its controller's joints.
 
@@ -103,6 +106,118 @@ TEST(ControllerSection, ReadsMeasurementsOfThePendant) {
             parse_campaign(robot_text + "measurements: {columns: pendant}\n", "a.yaml");
         }).find("a.yaml:7:25: measurements.columns is 'pendant'; must be controller or model"),
         std::string::npos);
+}
+
+/// The same of a robot from a URDF and from a Denavit-Hartenberg table: joints by their names
+/// there.
+TEST(ControllerSection, IsOfAnyRobotThatACampaignStates) {
+    const TemporaryFolder folder;
+    folder.write("arm.urdf", urdf_text({{"revolute", "", "0 0 1"},
+                                        {"revolute", R"(xyz="0.3 0 0.4")", "0 1 0"},
+                                        {"prismatic", R"(xyz="0 0 0.5")", "1 0 0"}}));
+    const std::string sensor = "sensor: {kind: points, sigma_mm: 0.05, targets: {count: 3}}\n";
+    const std::string urdf =
+        "name: urdf\nrobot: {urdf: arm.urdf, base_link: link0, tip_link: link3}\n" + sensor;
+    const std::string table =
+        "name: dh\nrobot:\n  dh:\n    convention: standard\n    rows:\n"
+        "    - {joint: q1, a_mm: 300, alpha_deg: 90, d_mm: 400, theta_deg: 0, limits_deg: [-90, "
+        "90]}\n"
+        "    - {joint: q2, a_mm: 500, alpha_deg: 0, d_mm: 0, theta_deg: 0, limits_deg: [-90, "
+        "90]}\n"
+        "    - {joint: q3, kind: prismatic, a_mm: 0, alpha_deg: 0, d_mm: 0, theta_deg: 0, "
+        "limits_mm: [0, 900]}\n" +
+        sensor;
+    const std::string controller =
+        "controller: {joints: {J1: -q1, J2: q2 - q1 + 90 deg, z: q3 + 100 mm}}\n"
+        "measurements: {columns: controller}\n"
+        "cell: {joint_sums: {J2: {limits_deg: [-10, 100]}, z: {limits_mm: [150, 600]}}}\n";
+    for (const std::string& robot : {urdf, table}) {
+        const CampaignFile file = read_campaign(folder.write("arm.yaml", robot + controller));
+        EXPECT_EQ(file.controller.names(), (std::vector<std::string>{"J1", "J2", "z"}));
+        const Vector3d q(10 * degree, 30 * degree, 0.25);
+        const Vector3d expected(-10 * degree, 110 * degree, 0.35);
+        EXPECT_LT((file.controller.to_controller(q) - expected).norm(), 1e-14) << file.name;
+        EXPECT_LT((file.controller.to_model(expected) - q).norm(), 1e-14) << file.name;
+        EXPECT_EQ(file.controller.motion(2), Motion::Translation);
+        ASSERT_EQ(file.cell.joint_sums.size(), 2U);
+        EXPECT_NEAR(file.cell.joint_sums[0].limits.upper, 10 * degree, 1e-14);
+        EXPECT_NEAR(file.cell.joint_sums[1].limits.lower, 0.05, 1e-14);
+        const Measurements read = read_measurements(
+            folder.write("m.csv",
+                         "config,J1_deg,J2_deg,z_mm,p1_x_mm,p1_y_mm,p1_z_mm,p2_x_mm,p2_y_mm,"
+                         "p2_z_mm,p3_x_mm,p3_y_mm,p3_z_mm\na,-10,110,350,1,2,3,4,5,6,7,8,9\n"),
+            file);
+        EXPECT_LT((read.configurations.row(0).transpose() - q).norm(), 1e-14) << file.name;
+    }
+    EXPECT_NE(input_error_of([&] {
+                  read_campaign(folder.write(
+                      "arm.yaml", urdf + "controller: {joints: {J1: q1, J2: q2 - q3, z: q3}}\n"));
+              }).find("q3"),
+              std::string::npos);
+}
+
+/// Each example of the manual of robot programs is read, with the FANUC cell's robot.
+TEST(ControllerSection, TakesTheExamplesOfTheManual) {
+    const std::string manual =
+        detail::read_file(source_folder() + "/designs/programs.md", std::size_t{1} << 20);
+    const std::string cell_path = source_folder() + "/designs/cell_demo/campaign.yaml";
+    const std::string cell = detail::read_file(cell_path, std::size_t{1} << 20);
+    const std::string begin = "```yaml\n";
+    int count = 0;
+    for (std::size_t at = manual.find(begin); at != std::string::npos;
+         at = manual.find(begin, at + 1)) {
+        const std::size_t first = at + begin.size();
+        const std::string example = manual.substr(first, manual.find("```", first) - first);
+        std::string text = cell;
+        if (example.starts_with("cell: ")) {  // one section in a file
+            text = text.substr(0, text.find("\ncell:"));
+        }
+        const CampaignFile file = parse_campaign(text + '\n' + example, cell_path);
+        EXPECT_FALSE(file.controller.is_identity() && file.controller.names()[0] == "q1" &&
+                     file.cell.joint_sums.empty())
+            << example;
+        ++count;
+    }
+    EXPECT_EQ(count, 6);
+}
+
+TEST(ControllerSection, NamesJointsThatACellLimits) {
+    const auto sum_of = [](const std::string& sections) {
+        const CampaignFile file = parse_campaign(robot_text + sections, "arm.yaml");
+        EXPECT_EQ(file.cell.joint_sums.size(), 1U);
+        return file.cell.joint_sums.front();
+    };
+    const std::string controller = "controller: {joints: {J3: q3 - q2, J5: 90 deg - q5}}\n";
+    const auto limited = [&](const std::string& what) {
+        return sum_of(controller + "cell: {margin_deg: 2, joint_sums: {" + what +
+                      ": {limits_deg: [-30, 40]}}}\n");
+    };
+    for (const auto& [name, sum] :
+         {std::pair{"J3", "q3 - q2"}, {"J5", "90 deg - q5"}, {"J4", "q4"}}) {
+        const JointSum by_name = limited(name);
+        const JointSum as_sum = limited(sum);
+        EXPECT_EQ(by_name.name, name);
+        EXPECT_EQ(by_name.coefficients, as_sum.coefficients) << name;
+        EXPECT_NEAR(by_name.limits.lower, as_sum.limits.lower, 1e-15) << name;
+        EXPECT_NEAR(by_name.limits.upper, as_sum.limits.upper, 1e-15) << name;
+    }
+    // Joint 5 of the controller at 50 deg is the model's at 40 deg.
+    const std::string home = controller +
+                             "cell: {joint_sums: {J5: {limits_deg: [-30, 40]}}, home_deg: [0, 0, "
+                             "0, 0, 40, 0]}\n";
+    EXPECT_NE(input_error_of([&] {
+                  parse_campaign(robot_text + home, "arm.yaml");
+              }).find("is beyond joint_sums: J5 is 50 deg, must be from -30 to 40 deg"),
+              std::string::npos);
+    // What is q3, the robot's or the controller's?
+    EXPECT_NE(input_error_of([&] {
+                  parse_campaign(robot_text +
+                                     "controller: {joints: {q1: q1, q2: q2, q3: q3 - q2, q4: q4, "
+                                     "q5: q5, q6: q6}}\n"
+                                     "cell: {joint_sums: {q3: {limits_deg: [-30, 40]}}}\n",
+                                 "arm.yaml");
+              }).find("arm.yaml:8:21: 'q3' names a joint of the robot and one of the controller"),
+              std::string::npos);
 }
 
 TEST(ControllerSection, SaysWhatIsWrongWhere) {

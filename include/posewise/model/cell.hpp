@@ -137,6 +137,7 @@ struct JointSum {
     std::string name;       ///< as it was stated: "q3 - q2"
     VectorXd coefficients;  ///< of each joint of the robot
     Interval limits;        ///< rad or m
+    double offset = 0;      ///< rad or m; its `name` includes that, its limits do not
 };
 
 struct Cell {

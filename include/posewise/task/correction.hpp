@@ -25,8 +25,8 @@ struct CorrectedPoses {
     /// Configurations that are not brought home: joints are held, or the pose is singular, and over
     /// half of the error is left.
     std::vector<Index> not_home{};
-    /// Which nominal configurations bring links of the campaign's cell into obstacles or each
-    /// other, in words; empty: none.
+    /// Which configurations, nominal and corrected, bring links of the campaign's cell into
+    /// obstacles or each other, or are beyond its joint sums, in words; empty: none.
     std::string collisions = {};
 
     /// Whether at least half are brought home; else these corrections must not be sent to a robot.

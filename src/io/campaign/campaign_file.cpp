@@ -323,17 +323,17 @@ CampaignFile parse(const std::string& content, const std::string& path,
     if (const auto measurements = map.find("measurements")) {
         read_measurements_section(*measurements, file);
     }
-    if (const auto cell = map.find("cell")) {
-        file.cell = read_cell(*cell, campaign.robot, *sensor.sensor);
-    }
-    if (file.cell.speed.size() == 0) file.cell.speed = robot.speed;
     file.controller = ControllerJoints(campaign.robot);
-    if (const auto record = map.find("record")) file.record = read_record(*record);
     if (const auto section = map.find("controller")) {
         const auto [joints, maker] = detail::read_controller(*section, campaign.robot);
         file.controller = joints;
         file.controller_maker = maker;
     }
+    if (const auto cell = map.find("cell")) {
+        file.cell = read_cell(*cell, campaign.robot, *sensor.sensor, file.controller);
+    }
+    if (file.cell.speed.size() == 0) file.cell.speed = robot.speed;
+    if (const auto record = map.find("record")) file.record = read_record(*record);
     return file;
 }
 

@@ -47,15 +47,16 @@ SensorSection read_camera(const YamlValue& sensor);
 /// Of kind camera, with the key same_camera: `camera`, which sees another board.
 SensorSection read_another_board(const YamlValue& sensor, const CameraSensor& camera);
 
-/// `robot` gives the joints' names and limits.
-Cell read_cell(const YamlValue& cell, const Chain& robot, const Sensor& sensor);
-
 /// How the controller's joints follow from those of `robot`.
 struct ControllerSection {
     ControllerJoints joints;
     std::string maker = "";  ///< empty: not stated
 };
 ControllerSection read_controller(const YamlValue& controller, const Chain& robot);
+
+/// `robot` gives the joints' names and limits, `controller` further names of joint sums.
+Cell read_cell(const YamlValue& cell, const Chain& robot, const Sensor& sensor,
+               const ControllerJoints& controller);
 
 /// Whether such a key is there and says so.
 bool is_true(const YamlMap& map, std::string_view key);

@@ -203,15 +203,43 @@ void read_fixed(const YamlValue& value, const Chain& robot, Cell& cell) {
     }
 }
 
+/// What a limit is of: a sum of the robot's joints, or a joint of the controller, which is one.
+Element parse_limited(const YamlEntry& entry, bool turns, const Chain& robot,
+                      const ControllerJoints& controller) {
+    const std::vector<std::string> names = names_of_joints(robot);
+    const auto& shown = controller.names();
+    const auto found = std::find(shown.begin(), shown.end(), trim(entry.key));
+    const Motion motion = turns ? Motion::Rotation : Motion::Translation;
+    const bool is_same = controller.is_identity() && shown == names;
+    if (found == shown.end() || is_same) {
+        return ElementParser(names).parse_joint_sum(entry.key, entry.key_location, motion);
+    }
+    if (std::find(names.begin(), names.end(), *found) != names.end()) {
+        throw input_error_at(entry.key_location,
+                             quote(*found) +
+                                 " names a joint of the robot and one of the controller; must be "
+                                 "one: call the controller's joints otherwise");
+    }
+    const Index row = found - shown.begin();
+    Element element;
+    element.motion = motion;
+    element.value = controller.offset()[row];
+    for (Index j = 0; j < controller.count(); ++j) {
+        const double coefficient = controller.from_model()(row, j);
+        if (coefficient != 0) element.joints.push_back({j, coefficient});
+    }
+    return element;
+}
+
 /// Of joints that all turn, in degrees or mm: "q3 - q2: {limits_deg: [-80, 90]}".
-JointSum read_joint_sum(const YamlEntry& entry, const Chain& robot) {
+JointSum read_joint_sum(const YamlEntry& entry, const Chain& robot,
+                        const ControllerJoints& controller) {
     const YamlMap map(entry.value, keys::joint_sum);
     const YamlMeasure limits = map.require_measure("limits");
     const bool turns = limits.unit->quantity == Quantity::Angle;
-    const Element parsed = ElementParser(names_of_joints(robot))
-                               .parse_joint_sum(entry.key, entry.key_location,
-                                                turns ? Motion::Rotation : Motion::Translation);
-    JointSum sum{entry.key, VectorXd::Zero(robot.joint_count()), read_interval(limits)};
+    const Element parsed = parse_limited(entry, turns, robot, controller);
+    JointSum sum{entry.key, VectorXd::Zero(robot.joint_count()), read_interval(limits),
+                 parsed.value};
     for (const JointTerm& term : parsed.joints) {
         sum.coefficients[term.joint] = term.coefficient;
         if (robot.joint(term.joint).motion != parsed.motion) {
@@ -221,8 +249,8 @@ JointSum read_joint_sum(const YamlEntry& entry, const Chain& robot) {
                             turns ? "slides; must be in mm or m" : "turns; must be in deg or rad"));
         }
     }
-    sum.limits.lower -= parsed.value;
-    sum.limits.upper -= parsed.value;
+    sum.limits.lower -= sum.offset;
+    sum.limits.upper -= sum.offset;
     return sum;
 }
 
@@ -331,13 +359,14 @@ void read_margin(const YamlMap& map, const Chain& robot, Cell& cell) {
 
 }  // namespace
 
-Cell read_cell(const YamlValue& value, const Chain& robot, const Sensor& sensor) {
+Cell read_cell(const YamlValue& value, const Chain& robot, const Sensor& sensor,
+               const ControllerJoints& controller) {
     const YamlMap map(value, keys::cell);
     Cell cell;
     read_margin(map, robot, cell);
     if (const auto sums = map.find("joint_sums")) {
         for (const YamlEntry& entry : sums->entries()) {
-            cell.joint_sums.push_back(read_joint_sum(entry, robot));
+            cell.joint_sums.push_back(read_joint_sum(entry, robot, controller));
         }
     }
     if (const auto fixed = map.find("fixed")) read_fixed(*fixed, robot, cell);

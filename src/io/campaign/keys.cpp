@@ -439,7 +439,8 @@ const YamlKeys cell{
     {
         {"margin_deg", "", "kept from the limits of joints that turn", "0", "`2`"},
         {"slide_margin_mm", "", "kept from the limits of joints that slide", "0", "`10`"},
-        {"joint_sums", "", "sums of joints that have limits of their own", "none",
+        {"joint_sums", "",
+         "sums of joints, or joints of the controller, that have limits of their own", "none",
          "`{q3 - q2: {limits_deg: [-80, 90]}}`"},
         {"fixed", "", "joints that stay", "none", "`{q6: 0 deg}`"},
         {"least_joint_distance_deg", "", "two poses of a plan differ by so much in some joint",

@@ -1,5 +1,6 @@
 #include "posewise/task/correction.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/text.hpp"
@@ -29,9 +30,9 @@ bool is_home(const Chain& robot, const Correction& correction, const CorrectionO
            size(correction.residual) <= most * size(correction.uncorrected);
 }
 
-/// What of the program collides in the campaign's cell, the targets taken off.
-std::string describe_collisions(const Campaign& campaign, const RowMatrixXd& configurations,
-                                const std::vector<std::string>& ids) {
+/// What of the program collides in the campaign's cell, the targets taken off, or is beyond its
+/// joint sums.
+CellViolations find_collisions(const Campaign& campaign, const RowMatrixXd& configurations) {
     Campaign working = campaign;
     working.has_nominal_targets = false;
     Cell cell;
@@ -40,7 +41,20 @@ std::string describe_collisions(const Campaign& campaign, const RowMatrixXd& con
     cell.keep_outs = campaign.cell.keep_outs;
     cell.safety_distance = campaign.cell.safety_distance;
     working.cell = cell;
-    return describe(find_violations(Constraints(working, cell, false), configurations), ids);
+    return find_violations(Constraints(working, cell, false), configurations);
+}
+
+/// Of the program, and of what its corrections add.
+std::string describe_collisions(const Campaign& campaign, const CorrectedPoses& poses) {
+    RowMatrixXd corrected = poses.nominal;
+    for (Index i = 0; i < corrected.rows(); ++i) {
+        corrected.row(i) = poses.corrections[static_cast<std::size_t>(i)].joints.transpose();
+    }
+    const CellViolations before = find_collisions(campaign, poses.nominal);
+    const CellViolations after = find_collisions(campaign, corrected);
+    const std::string text = describe(before, poses.ids);
+    if (std::ranges::includes(before.rows, after.rows)) return text;
+    return text + (text.empty() ? "" : "; ") + "once corrected, " + describe(after, poses.ids);
 }
 
 }  // namespace
@@ -51,7 +65,6 @@ CorrectedPoses correct_poses(const Campaign& campaign, const Parameters& found,
     const Isometry3d from_base = estimated_base_from_base(campaign, found, base);
     const VectorXd no_errors = VectorXd::Zero(campaign.robot.parameter_count());
     CorrectedPoses corrected{campaign.robot, ids, configurations, {}, {}, {}};
-    corrected.collisions = describe_collisions(campaign, configurations, ids);
     for (Index i = 0; i < configurations.rows(); ++i) {
         const VectorXd nominal = configurations.row(i).transpose();
         try {
@@ -66,6 +79,7 @@ CorrectedPoses correct_poses(const Campaign& campaign, const Parameters& found,
             corrected.not_home.push_back(i);
         }
     }
+    corrected.collisions = describe_collisions(campaign, corrected);
     return corrected;
 }
 
