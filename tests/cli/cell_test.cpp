@@ -1,4 +1,8 @@
+#include <fmt/format.h>
+
+#include <iostream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 
 #include "program.hpp"
@@ -78,6 +82,80 @@ TEST_F(CellCommands, SendTheRobotOverThePointsToPassAndSayWhereThereIsNoWay) {
     // Nothing is measured on the way.
     run_well("simulate w.yaml --configurations w.csv -o m.csv");
     run_well("calibrate w.yaml -m m.csv --plan w.json --folds 0");
+}
+
+/// A limit of the pendant's joint 3, checked from the files alone: at each pose, at each point that
+/// is passed and at each move of the program. What it costs is printed.
+TEST_F(CellCommands, KeepLimitsOfAControllersJointOnTheWholeWay) {
+    const double lower = -60;  // deg
+    const double upper = 35;
+    write_cell("free.yaml", {{"max: [1700, 600, -100]",
+                              "max: [1700, 600, -100]}}\n    - {name: beam, box_mm: {min: [900, "
+                              "-700, 300], max: [2900, -500, 3200]"},
+                             {"  home_deg: [0, -30, 0, 0, 0, 0]\n", ""},
+                             {"line_of_sight: true", "line_of_sight: false"}});
+    std::string text = text_of("free.yaml") + "\ncontroller: {joints: {J3: q3 - q2}}\n";
+    write_text("free.yaml", text);
+    const std::string cell = "\ncell:\n";
+    text.insert(text.find(cell) + cell.size(),
+                fmt::format("  joint_sums: {{J3: {{limits_deg: [{}, {}]}}}}\n", lower, upper));
+    write_text("limited.yaml", text);
+    const auto made = [&](const std::string& name) {
+        EXPECT_EQ(run("plan " + name + ".yaml -k 12" + quick + "-o " + name + ".json").code, 0);
+        return nlohmann::json::parse(text_of(name + ".json"));
+    };
+    const auto free = made("free");
+    const auto limited = made("limited");
+    const double margin = 2;  // margin_deg
+    std::size_t vias = 0;
+    bool is_tight = false;
+    const auto third = [](const nlohmann::json& q) {
+        return (q.at("q3_rad").get<double>() - q.at("q2_rad").get<double>()) * 180 /
+               std::numbers::pi;
+    };
+    for (const auto& pose : limited.at("poses")) {
+        std::vector<nlohmann::json> passed{pose.at("joints")};
+        if (!pose.at("via").is_null()) passed.push_back(pose.at("via"));
+        vias += passed.size() - 1;
+        for (const auto& q : passed) {
+            EXPECT_GE(third(q), lower + margin - 1e-6) << pose.dump();
+            EXPECT_LE(third(q), upper - margin + 1e-6) << pose.dump();
+        }
+    }
+    EXPECT_GT(vias, 0U);
+    for (const auto& pose : free.at("poses")) {
+        const double sum = third(pose.at("joints"));
+        is_tight = is_tight || sum < lower || sum > upper;
+    }
+    EXPECT_TRUE(is_tight);
+    // As the program has it.
+    EXPECT_EQ(run("program limited.json --for csv -o limited.csv").code, 0);
+    std::istringstream lines(text_of("limited.csv"));
+    std::string line;
+    std::getline(lines, line);
+    std::size_t moves = 0;
+    for (; std::getline(lines, line); ++moves) {
+        std::vector<std::string> fields;
+        std::istringstream row(line);
+        for (std::string field; std::getline(row, field, ',');) fields.push_back(field);
+        EXPECT_GE(std::stod(fields.at(3)), lower + margin - 1e-5) << line;
+        EXPECT_LE(std::stod(fields.at(3)), upper - margin + 1e-5) << line;
+    }
+    EXPECT_EQ(moves, 12 + vias);
+    // V is 1 over a mean square error, so that its loss is one of accuracy. As far as searches find
+    // the best: the smaller pool is searched better.
+    const auto rms = [](const nlohmann::json& plan) {
+        return 1e3 * plan.at("predicted").at("position_error_rms_m").get<double>();
+    };
+    const double loss = 1 - limited.at("value").get<double>() / free.at("value").get<double>();
+    std::cout << fmt::format(
+        "limits of J3 from {} to {} deg cost {:.1f} % of V: {:.4f} instead of {:.4f} mm RMS; {} "
+        "points passed, {} moves\n",
+        lower, upper, 100 * loss, rms(limited), rms(free), vias, moves);
+    EXPECT_LT(limited.at("value"), free.at("bounds").at("continuous").at("bound"));
+    EXPECT_GT(loss, -0.2);
+    EXPECT_LT(loss, 0.2);
+    EXPECT_LT(rms(limited), 1.2 * rms(free));
 }
 
 TEST_F(CellCommands, WarnThatAnArmWithoutLinksIsNotChecked) {

@@ -83,12 +83,21 @@ TEST_F(MakePlan, KeepsSumsOfJointsAtEveryPoseAndOnTheWay) {
     const double degree = testing::degree;
     VectorXd coefficients = VectorXd::Zero(6);
     coefficients << 0, -1, 1, 0, 0, 0;
-    campaign_.cell.joint_sums = {{"q3 - q2", coefficients, {-50 * degree, 35 * degree}}};
+    campaign_.cell.joint_sums = {{"q3 - q2", coefficients, {-60 * degree, 35 * degree}}};
+    // A beam that the arm must go round.
+    campaign_.cell.keep_outs.push_back({"beam", Box{{0.7, -0.5, 0.4}, {2.9, -0.2, 3.2}}});
+    campaign_.cell.home[0] = -60 * degree;
+    campaign_.cell.sight->is_line_required = false;
+    options_.pose_count = 12;
+    options_.pool_count = 1500;
+    options_.workspace_count = 5;
     const Planning planning = make_plan(campaign_, options_);
+    EXPECT_TRUE(std::ranges::any_of(planning.plan.poses,
+                                    [](const auto& pose) { return pose.via.has_value(); }));
     for (const PlannedPose& pose : planning.plan.poses) {
         for (const VectorXd& q : {pose.via.value_or(pose.configuration), pose.configuration}) {
             EXPECT_LE(q[2] - q[1], 33 * degree + 1e-9);  // less the margin
-            EXPECT_GE(q[2] - q[1], -48 * degree - 1e-9);
+            EXPECT_GE(q[2] - q[1], -58 * degree - 1e-9);
         }
     }
     EXPECT_TRUE(verify(planning.plan, campaign_, options_).is_right());
