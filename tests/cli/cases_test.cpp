@@ -19,7 +19,7 @@ struct Case {
 
 std::ostream& operator<<(std::ostream& out, const Case& one) { return out << one.name; }
 
-class Cases : public Program, public ::testing::WithParamInterface<Case> {
+class CaseFiles : public Program {
   protected:
     void SetUp() override {
         Program::SetUp();
@@ -33,6 +33,8 @@ class Cases : public Program, public ::testing::WithParamInterface<Case> {
     }
 };
 
+class Cases : public CaseFiles, public ::testing::WithParamInterface<Case> {};
+
 TEST_P(Cases, AreToldWhatTheyAre) {
     const Case& one = GetParam();
     const Outcome outcome = run(one.command);
@@ -43,6 +45,17 @@ TEST_P(Cases, AreToldWhatTheyAre) {
         EXPECT_NE(outcome.err.find(one.said), std::string::npos) << outcome.err;
     }
     EXPECT_NE(outcome.out.find(one.printed), std::string::npos) << outcome.out;
+}
+
+/// The coupling that CoupledJoint names, stated: the pendant's j3 is the model's j3 + j2.
+TEST_F(CaseFiles, CoupledJointIsCalibratedOnceItIsStated) {
+    write_text("coupled.yaml",
+               text_of("arm6.yaml") +
+                   "controller: {joints: {j1: j1, j2: j2, j3: j3 + j2, j4: j4, j5: j5, j6: j6}}\n"
+                   "measurements: {columns: controller}\n");
+    const Outcome outcome = run("calibrate coupled.yaml -m j3_against_ground.csv");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NEAR(number_behind(outcome.out, "distance RMS"), 1.97, 0.005) << outcome.out;
 }
 
 INSTANTIATE_TEST_SUITE_P(
