@@ -329,6 +329,14 @@ TEST_F(Points, WhatIsWrongIsSaidAndNothingWritten) {
     expect_input_error("calibrate c.yaml -m more.txt --points-unit mm --plan plan.json" + out,
                        "more.txt:1:1: 'nest1' is no point of the plan; must be one, such as "
                        "P001_T1, or be left out\n");
+    const Point& first = points_.front();
+    write_list("twice.txt", points_, row, first.name + " 1 2 3\n");
+    expect_input_error("calibrate c.yaml -m twice.txt --points-unit mm --plan plan.json" + out,
+                       "twice.txt:2:1: '" + first.name +
+                           "' is point P001_T1 once more, which line 1 has; keep one");
+    write_list("nan.txt", points_, row, "p99_t1 nan 2 3\n");
+    expect_input_error("calibrate c.yaml -m nan.txt --points-unit mm --plan plan.json" + out,
+                       "nan.txt:1:8: 'nan' is not finite; must be a finite number");
     write_list(
         "order.txt", points_, [](const Point& p) { return p.x + ' ' + p.y + ' ' + p.z; },
         "1 2 3\n");

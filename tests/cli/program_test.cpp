@@ -286,4 +286,38 @@ TEST_F(ProgramCommand, RefusesWhatNoRobotShouldDo) {
 }
 
 }  // namespace
+/// Limits between two of the program's thousandths of a degree.
+TEST_F(ProgramCommand, RefusesJointsThatNoDigitsReach) {
+    std::string cell = text_of("cell.yaml");
+    for (const auto& [from, to] :
+         {std::pair{"q6: {limits_deg: [-180, 180]}", "q6: {limits_deg: [0.0002, 0.0004]}"},
+          std::pair{"margin_deg: 2", "margin_deg: 0"},
+          std::pair{"home_deg: [0, -30, 0, 0, 0, 0]", "home_deg: [0, -30, 0, 0, 0, 0.0003]"}}) {
+        ASSERT_NE(cell.find(from), std::string::npos) << from;
+        cell.replace(cell.find(from), std::string(from).size(), to);
+    }
+    write_text("narrow.yaml", cell);
+    EXPECT_EQ(run("plan narrow.yaml -k 10 --prior --pool 600 --starts 1 --workspace-poses 30 -o "
+                  "narrow.json")
+                  .code,
+              0);
+    expect_input_error("program narrow.json --for fanuc -o A.ls",
+                       "narrow.json: pose 'p1' is right, but no joint values next to it are in the "
+                       "program's digits");
+}
+
 }  // namespace posewise::testing
+    // A joint that is no number, in a plan and in a program; a name at two places.
+    std::string broken = text_of("p.json");
+    const std::string joint = "\"q1_rad\": ";
+    ASSERT_NE(broken.find(joint), std::string::npos) << broken.substr(0, 3000);
+    broken.replace(broken.find(joint), joint.size(), joint + "NaN ");
+    write_text("nan.json", broken);
+    expect_input_error("program nan.json --for fanuc -o A.ls", "nan.json:");
+    write_text("nan.csv", "name,J1_deg,J2_deg,J3_deg,J4_deg,J5_deg,J6_deg\np1,0,nan,0,0,0,0\n");
+    expect_input_error("program p.json --for csv --read nan.csv -o back.csv", "nan.csv:2:6: ");
+    write_text("twice.csv",
+               "name,J1_deg,J2_deg,J3_deg,J4_deg,J5_deg,J6_deg\np1,0,0,0,0,0,0\np1,9,0,0,0,0,0\n");
+    expect_input_error("program p.json --for csv --read twice.csv -o back.csv",
+                       "twice.csv:3:1: visits 'p1' at other joints than before");
+
