@@ -227,16 +227,16 @@ std::string describe_influence(const Calibration& calibration, const AmountUnits
                        format_error(held_out, units), format_error(fit, units));
 }
 
-/// "; with the temperature (2.4 C): z changes by 0.012 mm per C, give or take 0.004 mm, p = 0.001".
+/// "; by the temperature (2.4 C): z changes by 0.012 mm per C (sigma 0.003 mm), p = 0.001".
 std::string describe_conditions(const Calibration& calibration) {
     std::string text;
     for (const ConditionTrend& condition : calibration.condition_trends) {
         const OrderSlope& worst = condition.trend.worst();
         const AmountUnits& units = calibration.campaign.sensor->units(worst.is_angle);
-        text += fmt::format("; by the {} ({} {}): {} changes by {} per {}, give or take {}, p = {}",
+        text += fmt::format("; by the {} ({} {}): {} changes by {} per {} (sigma {}), p = {}",
                             condition.name, format_short(condition.range, 3), condition.unit,
                             worst.axis, format_error(worst.change / condition.range, units),
-                            condition.unit, format_error(worst.detectable / condition.range, units),
+                            condition.unit, format_error(worst.error / condition.range, units),
                             format_short(worst.probability, 2));
     }
     return text;
@@ -247,18 +247,20 @@ std::string describe_order(const Calibration& calibration) {
     const OrderTrend& trend = *calibration.order_trend;
     const OrderSlope& worst = trend.worst();
     const AmountUnits& units = calibration.campaign.sensor->units(worst.is_angle);
-    const std::string size = fmt::format(
-        "{} changes by {} from first to last, p = {}{}", worst.axis,
-        format_error(worst.change, units), format_short(worst.probability, 2),
+    const std::string size =
+        fmt::format("{} changes by {} from first to last (sigma {}), p = {}", worst.axis,
+                    format_error(worst.change, units), format_error(worst.error, units),
+                    format_short(worst.probability, 2));
+    const std::string unsure =
         trend.is_beside_joints ? ""
-                               : "; the order of the poses themselves could look like this, too");
+                               : "; the order of the poses themselves could look like this, too";
     if (trend.is_plain()) {
         return fmt::format(
-            "yes, residuals follow the order of the measurements: {}; the first "
+            "yes, residuals follow the order of the measurements: {}{}; the first "
             "tenth is off the rest by {}",
-            size, format_error(worst.early, units));
+            size, unsure, format_error(worst.early, units));
     }
-    if (trend.is_possible()) return "perhaps: " + size;
+    if (trend.is_possible()) return "perhaps: " + size + unsure;
     double detectable = 0;
     for (const OrderSlope& slope : trend.slopes) {
         if (slope.is_angle == worst.is_angle) detectable = std::max(detectable, slope.detectable);
@@ -268,9 +270,9 @@ std::string describe_order(const Calibration& calibration) {
     }
     const Metrics& fit = calibration.estimate.fit;
     const double left = worst.is_angle ? fit.orientation_rms : fit.rms();
-    return fmt::format("{}; a drift of {} from first to last would have been seen",
+    return fmt::format("{}, {}; a drift of {} from first to last would have been seen",
                        detectable > left ? "none so large that it could be seen" : "none seen",
-                       format_error(detectable, units));
+                       size, format_error(detectable, units));
 }
 
 /// More configurations lower the parameters' variance alone, as 1 / n.

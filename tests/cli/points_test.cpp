@@ -408,14 +408,24 @@ TEST_F(Points, TimesAndTemperaturesAreLookedForInTheResiduals) {
     write_text("more.csv", text);
     const Outcome outcome = run("calibrate c.yaml -m more.csv -o e.json");
     EXPECT_EQ(outcome.err, "");
-    EXPECT_NE(outcome.out.find("by the time ("), std::string::npos) << outcome.out;
-    EXPECT_NE(outcome.out.find("by the temperature (0.6 C)"), std::string::npos) << outcome.out;
     const auto document = nlohmann::json::parse(text_of("e.json"));
     const auto& trends = document.at("accuracy").at("condition_trends");
     ASSERT_EQ(trends.size(), 2U);
     EXPECT_EQ(trends[0].at("unit"), "h");
     EXPECT_NEAR(trends[1].at("range").get<double>(), 0.6, 1e-9);
     EXPECT_EQ(trends[1].at("axes").size(), 3U);
+    for (const auto& answer : document.at("answers")) {
+        if (answer.at("key") != "drift") continue;
+        for (const char* const words :
+             {"by the time (", "by the temperature (0.6 C)", " mm per C (sigma "}) {
+            EXPECT_NE(answer.at("text").get<std::string>().find(words), std::string::npos)
+                << answer;
+        }
+    }
+    for (const auto& axis : trends[1].at("axes")) {
+        EXPECT_GT(axis.at("sigma_mm"), 0);
+        EXPECT_GT(axis.at("detectable_mm"), 1.9 * axis.at("sigma_mm").get<double>());
+    }
     // One cell that is no number: the column is passed over.
     write_text("more.csv", text.replace(text.rfind(",21") + 1, 2, "warm"));
     EXPECT_NE(run("calibrate c.yaml -m more.csv").err.find("column 'temperature_C' is not used"),

@@ -168,8 +168,45 @@ TEST_F(ProgramCommand, VisitsAReferencePoseAgain) {
     EXPECT_EQ(read.find("not of the plan"), std::string::npos) << read;
     // Measured there, they are configurations of their own, which drift is seen by.
     run_well("simulate cell.yaml --configurations p.as_sent.csv -o m.csv");
-    EXPECT_NE(run_well("calibrate cell.yaml -m m.csv --folds 0 --prior").find("Drift"),
-              std::string::npos);
+    const auto drift = [&](const std::string& name) {
+        const Outcome outcome = run("calibrate cell.yaml -m " + name + " --folds 0 --prior --json");
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        const auto document = nlohmann::json::parse(outcome.out);
+        for (const auto& answer : document.at("answers")) {
+            if (answer.at("key") == "drift") return answer.at("text").get<std::string>();
+        }
+        return std::string();
+    };
+    EXPECT_EQ(drift("m.csv").rfind("none ", 0), 0U) << drift("m.csv");
+    // The instrument drifts by 2 mm along z.
+    std::string drifting;
+    std::istringstream lines(text_of("m.csv"));
+    std::vector<std::string> measured;
+    for (std::string line; std::getline(lines, line);) {
+        if (line[0] != '#') measured.push_back(line);
+    }
+    const auto header = measured.front();
+    std::vector<bool> is_z;
+    std::istringstream names(header);
+    for (std::string name; std::getline(names, name, ',');) is_z.push_back(name.ends_with("_z_mm"));
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+        std::istringstream fields(measured[i]);
+        std::size_t column = 0;
+        for (std::string field; std::getline(fields, field, ','); ++column) {
+            if (i > 0 && is_z[column] && !field.empty()) {
+                const double part = static_cast<double>(i) / static_cast<double>(measured.size());
+                field = std::to_string(std::stod(field) + 2 * part);
+            }
+            drifting += (column == 0 ? "" : ",") + field;
+        }
+        drifting += measured[i].ends_with(',') ? ",\n" : "\n";
+    }
+    write_text("drift.csv", drifting);
+    const std::string found = drift("drift.csv");
+    EXPECT_NE(found.find("yes, residuals follow the order of the measurements: z changes by "),
+              std::string::npos)
+        << found;
+    EXPECT_NE(found.find(" mm from first to last (sigma "), std::string::npos) << found;
     expect_input_error("program p.json --for csv -o b.csv --reference p99",
                        "p.json: has no pose to calibrate with called 'p99'");
     EXPECT_EQ(run("program p.json --for csv -o b.csv --every 3").code, 2);
@@ -249,6 +286,26 @@ TEST_F(ProgramCommand, WarnsWhereNobodySaysHowAFanucCountsJ3) {
     }
 }
 
+/// Limits between two of the program's thousandths of a degree.
+TEST_F(ProgramCommand, RefusesJointsThatNoDigitsReach) {
+    std::string cell = text_of("cell.yaml");
+    for (const auto& [from, to] :
+         {std::pair{"q6: {limits_deg: [-180, 180]}", "q6: {limits_deg: [0.0002, 0.0004]}"},
+          std::pair{"margin_deg: 2", "margin_deg: 0"},
+          std::pair{"home_deg: [0, -30, 0, 0, 0, 0]", "home_deg: [0, -30, 0, 0, 0, 0.0003]"}}) {
+        ASSERT_NE(cell.find(from), std::string::npos) << from;
+        cell.replace(cell.find(from), std::string(from).size(), to);
+    }
+    write_text("narrow.yaml", cell);
+    EXPECT_EQ(run("plan narrow.yaml -k 10 --prior --pool 600 --starts 1 --workspace-poses 30 -o "
+                  "narrow.json")
+                  .code,
+              0);
+    expect_input_error("program narrow.json --for fanuc -o A.ls",
+                       "narrow.json: pose 'p1' is right, but no joint values next to it are in the "
+                       "program's digits");
+}
+
 TEST_F(ProgramCommand, RefusesWhatNoRobotShouldDo) {
     write_cell("plain.yaml", "{}");
     expect_input_error("program p.json --campaign plain.yaml --for yaskawa -o A.jbi",
@@ -280,33 +337,6 @@ TEST_F(ProgramCommand, RefusesWhatNoRobotShouldDo) {
     expect_input_error("program blocked.json --for fanuc -o A.ls",
                        "is BLOCKED; plan again with more room, or without it: --drop");
 
-    write_cell("singular.yaml", "{joints: {J3: q2}}");
-    expect_input_error("program p.json --for fanuc -o A.ls --campaign singular.yaml",
-                       "their matrix is singular");
-}
-
-}  // namespace
-/// Limits between two of the program's thousandths of a degree.
-TEST_F(ProgramCommand, RefusesJointsThatNoDigitsReach) {
-    std::string cell = text_of("cell.yaml");
-    for (const auto& [from, to] :
-         {std::pair{"q6: {limits_deg: [-180, 180]}", "q6: {limits_deg: [0.0002, 0.0004]}"},
-          std::pair{"margin_deg: 2", "margin_deg: 0"},
-          std::pair{"home_deg: [0, -30, 0, 0, 0, 0]", "home_deg: [0, -30, 0, 0, 0, 0.0003]"}}) {
-        ASSERT_NE(cell.find(from), std::string::npos) << from;
-        cell.replace(cell.find(from), std::string(from).size(), to);
-    }
-    write_text("narrow.yaml", cell);
-    EXPECT_EQ(run("plan narrow.yaml -k 10 --prior --pool 600 --starts 1 --workspace-poses 30 -o "
-                  "narrow.json")
-                  .code,
-              0);
-    expect_input_error("program narrow.json --for fanuc -o A.ls",
-                       "narrow.json: pose 'p1' is right, but no joint values next to it are in the "
-                       "program's digits");
-}
-
-}  // namespace posewise::testing
     // A joint that is no number, in a plan and in a program; a name at two places.
     std::string broken = text_of("p.json");
     const std::string joint = "\"q1_rad\": ";
@@ -321,3 +351,10 @@ TEST_F(ProgramCommand, RefusesJointsThatNoDigitsReach) {
     expect_input_error("program p.json --for csv --read twice.csv -o back.csv",
                        "twice.csv:3:1: visits 'p1' at other joints than before");
 
+    write_cell("singular.yaml", "{joints: {J3: q2}}");
+    expect_input_error("program p.json --for fanuc -o A.ls --campaign singular.yaml",
+                       "their matrix is singular");
+}
+
+}  // namespace
+}  // namespace posewise::testing

@@ -40,6 +40,10 @@ TEST_F(ResidualAnswers, FindDriftWhereThereIsSome) {
     EXPECT_TRUE(trend.is_beside_joints);
     EXPECT_NEAR(trend.worst().change, 4e-4, 1e-4);
     EXPECT_LT(trend.worst().early, -1e-4);
+    // Means of 3 readings over 30 configurations, as of a line without anything beside it.
+    const double alone = 1e-4 / std::sqrt(3.0) * 29 / std::sqrt(30 * (30 * 30 - 1) / 12.0);
+    EXPECT_GT(trend.worst().error, 0.7 * alone);
+    EXPECT_LT(trend.worst().error, 2 * alone);
     EXPECT_LT(trend.worst().detectable, 4e-4);
 }
 
@@ -71,13 +75,20 @@ TEST_F(ResidualAnswers, FindWhatFollowsATemperature) {
 
 TEST_F(ResidualAnswers, HardlyEverFindDriftWhereThereIsNone) {
     Index plain = 0, possible = 0;
+    double square = 0;  // of the changes over their standard deviations
+    double count = 0;
     constexpr Index campaigns = 400;
     for (Index seed = 1; seed <= campaigns; ++seed) {
         const OrderTrend trend = trend_of(measure(25, static_cast<std::uint64_t>(seed)));
         plain += trend.is_plain() ? 1 : 0;
         possible += trend.is_possible() ? 1 : 0;
+        for (const OrderSlope& slope : trend.slopes) {
+            square += std::pow(slope.change / slope.error, 2);
+            ++count;
+        }
     }
-    EXPECT_LE(plain, 16);  // about 4 would be 1 %
+    EXPECT_NEAR(square / count, 1.1, 0.25);  // f / (f - 2) of f degrees of freedom
+    EXPECT_LE(plain, 16);                    // about 4 would be 1 %
     EXPECT_LE(possible, 44);
 }
 

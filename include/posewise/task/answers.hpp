@@ -28,6 +28,7 @@ struct OrderSlope {
     double detectable = 0;   ///< a change that would be seen with 95 % confidence
     double early = 0;        ///< mean of the first tenth less that of the others
     double probability = 1;  ///< that chance alone makes one of the axes change as much
+    double error = 0;        ///< standard deviation of the change
 };
 
 /// Whether residuals follow the order of the measurements, as those of a robot that warms up or of

@@ -116,6 +116,7 @@ void add_residual_answers(Json& accuracy, const Calibration& calibration) {
                 detail::error_suffix(calibration.campaign.sensor->units(slope.is_angle));
             slopes.push_back({{"axis", slope.axis},
                               {"change" + own, mm * slope.change},
+                              {"sigma" + own, mm * slope.error},
                               {"detectable" + own, mm * slope.detectable},
                               {"early" + own, mm * slope.early},
                               {"probability", slope.probability}});
@@ -131,6 +132,7 @@ void add_residual_answers(Json& accuracy, const Calibration& calibration) {
                 detail::error_suffix(calibration.campaign.sensor->units(slope.is_angle));
             slopes.push_back({{"axis", slope.axis},
                               {"change" + own, mm * slope.change},
+                              {"sigma" + own, mm * slope.error},
                               {"detectable" + own, mm * slope.detectable},
                               {"probability", slope.probability}});
         }

@@ -178,7 +178,7 @@ std::optional<OrderTrend> find_trend(const Campaign& campaign, const RowMatrixXd
             {axes[static_cast<std::size_t>(axis)], campaign.sensor->is_angle(axis),
              line->slope * length,
              student_quantile(1 - level / axis_count / 2, line->freedom) * line->error * length, 0,
-             std::min(1.0, axis_count * by_chance)});
+             std::min(1.0, axis_count * by_chance), line->error * length});
     }
     if (trend.slopes.empty()) return std::nullopt;
     return trend;
