@@ -23,6 +23,7 @@ Example:
   posewise export campaign.yaml estimate.json --dh calibrated.yaml
   posewise export campaign.yaml estimate.json --ur-kinematics my_robot_calibration.yaml
   posewise export campaign.yaml estimate.json --mujoco arm.xml
+  posewise export campaign.yaml estimate.json --robodk arm.py
   posewise export campaign.yaml estimate.json --urdf calibrated.urdf --map map.c --geometry estimate
   posewise export campaign.yaml estimate.json --camera camera.yaml
 
@@ -55,6 +56,10 @@ offset d where the next axis is nearly parallel (Hayati).
 --mujoco writes any robot as a model for MuJoCo (MJCF): a body a joint, with its limits, and sites at
 flange and targets or tool. qpos of a joint is its value (rad or m) as the robot has it. A joint q2.2
 is what q2 drives besides (couplings); it follows q2. Masses are not known; each body has 1 g.
+
+--robodk writes a robot of joints that turn as modified Denavit-Hartenberg rows in a Python script,
+which sets them as the accurate kinematics of a robot in RoboDK. It was not tried in RoboDK: compare a
+pose first.
 
 --ur-kinematics writes a robot of six joints that turn as the file of kinematics that ur_description
 and the ROS drivers of Universal Robots read. It begins at what they call base_link_inertia and ends
@@ -102,6 +107,11 @@ io::ExportedRobot make_robot(const ExportArguments& arguments, const io::Campaig
             return ur_frames(robot.written().robot, robot.written().errors);
         });
     }
+    if (!paths.robodk.empty()) {
+        robot.robodk = compute_from(arguments.campaign, [&robot] {
+            return modified_dh(robot.written().robot, robot.written().errors);
+        });
+    }
     if (!paths.camera.empty()) robot.camera = io::camera_places(file, found);
     if (!paths.map.empty()) {
         robot.map = compute_from(arguments.estimate, [&] { return correction_map(file, found); });
@@ -130,16 +140,21 @@ void write_files(const ExportPaths& paths, const io::CampaignFile& file, io::Exp
                 return io::write_mujoco(paths.mujoco, title, robot.written());
             }));
     }
+    if (robot.robodk) {
+        add(paths.robodk, io::write_robodk(paths.robodk, title, *robot.robodk, chain, errors));
+    }
     if (robot.camera) io::write_camera(paths.camera, file, *robot.camera);
     if (robot.map) io::write_correction_map(paths.map, file.name, *robot.map);
 }
 
 void export_estimate(const ExportArguments& arguments, const CommonOptions& common) {
     const ExportPaths& paths = arguments.paths;
-    const bool has_geometry = !(paths.urdf.empty() && paths.dh.empty() &&
-                                paths.ur_kinematics.empty() && paths.mujoco.empty());
+    const bool has_geometry =
+        !(paths.urdf.empty() && paths.dh.empty() && paths.ur_kinematics.empty() &&
+          paths.mujoco.empty() && paths.robodk.empty());
     if (!has_geometry && paths.map.empty() && paths.camera.empty()) {
-        throw CLI::RequiredError("--urdf, --dh, --ur-kinematics, --mujoco, --map or --camera");
+        throw CLI::RequiredError(
+            "--urdf, --dh, --ur-kinematics, --mujoco, --robodk, --map or --camera");
     }
     if (!paths.camera.empty()) io::check_camera_path(paths.camera);
     if (!paths.map.empty()) {
@@ -151,9 +166,10 @@ void export_estimate(const ExportArguments& arguments, const CommonOptions& comm
         }
     }
     const io::CampaignFile file = io::read_campaign(arguments.campaign);
-    check_outputs(
-        {&file}, {arguments.estimate, arguments.workspace},
-        {paths.urdf, paths.dh, paths.ur_kinematics, paths.mujoco, paths.map, paths.camera}, common);
+    check_outputs({&file}, {arguments.estimate, arguments.workspace},
+                  {paths.urdf, paths.dh, paths.ur_kinematics, paths.mujoco, paths.robodk, paths.map,
+                   paths.camera},
+                  common);
     if (!paths.urdf.empty() && !file.urdf) {
         throw input_error_at({arguments.campaign},
                              "has a robot that does not come from a URDF; only such a one can go "
@@ -189,6 +205,8 @@ void add_export(CLI::App& program, const CommonOptions& common) {
     add_file("--ur-kinematics", arguments->paths.ur_kinematics,
              "Write it as kinematics of ur_description (YAML)");
     add_file("--mujoco", arguments->paths.mujoco, "Write it as a model for MuJoCo (MJCF)");
+    add_file("--robodk", arguments->paths.robodk,
+             "Write it as a script that sets the parameters of a robot in RoboDK (Python)");
     add_file("--map", arguments->paths.map,
              "Write what depends on the configuration for a cell's own software: .c or .csv");
     add_file("--camera", arguments->paths.camera,

@@ -141,12 +141,16 @@ void print_camera(const io::CameraPlaces& places, const io::CampaignFile& file,
 
 void warn_of(const io::ExportedRobot& robot, const ExportPaths& paths) {
     constexpr double far = 10;  // m
-    for (std::size_t k = 0; k < robot.dh.size(); ++k) {
-        const double offset = std::max(std::abs(robot.dh[k].d), std::abs(robot.dh[k].a));
-        if (offset < far) continue;
-        print_warning(fmt::format("{}: row {} has an offset of {} m; do not round it", paths.dh,
-                                  k + 1, detail::format_short(offset, 4)));
-    }
+    const auto warn = [](const std::string& path, const std::vector<DhRow>& rows) {
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            const double offset = std::max(std::abs(rows[k].d), std::abs(rows[k].a));
+            if (offset < far) continue;
+            print_warning(fmt::format("{}: row {} has an offset of {} m; do not round it", path,
+                                      k + 1, detail::format_short(offset, 4)));
+        }
+    };
+    warn(paths.dh, robot.dh);
+    if (robot.robodk) warn(paths.robodk, robot.robodk->rows);
 }
 
 void print_export(const io::ExportedRobot& robot, const io::CampaignFile& file,
@@ -157,6 +161,10 @@ void print_export(const io::ExportedRobot& robot, const io::CampaignFile& file,
     if (!paths.mujoco.empty()) {
         print(fmt::format("{}: the calibrated robot as a model for MuJoCo is in {}\n", file.name,
                           detail::escape_controls(paths.mujoco)));
+    }
+    if (robot.robodk) {
+        print(fmt::format("{}: the calibrated robot as parameters of RoboDK is in {}\n", file.name,
+                          detail::escape_controls(paths.robodk)));
     }
     if (robot.map) print_map(*robot.map, file, paths.map);
     if (robot.camera) print_camera(*robot.camera, file, paths.camera);

@@ -13,6 +13,7 @@ struct ExportPaths {
     std::string dh;
     std::string ur_kinematics;
     std::string mujoco;
+    std::string robodk;
     std::string map;
     std::string camera;
 };

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "driven_axes.hpp"
+#include "posewise/core/errors.hpp"
 
 namespace posewise {
 namespace {
@@ -58,12 +59,14 @@ DhRow row_to_nearly_parallel(const Vector3d& p, const Vector3d& u) {
 }
 
 /// The row from a frame to the nearest one whose z axis is the line.
-DhRow row_to(const Isometry3d& frame, const detail::Line& line) {
+DhRow row_to(const Isometry3d& frame, const detail::Line& line, bool has_beta = true) {
     constexpr double parallel = 1e-12;  // rad; what is nearer is rounding
     const Vector3d u = frame.linear().transpose() * line.direction;
     const Vector3d p = frame.inverse() * line.point;
     const double sine = std::hypot(u.x(), u.y());
-    if (sine >= parallel && sine < detail::nearly_parallel) return row_to_nearly_parallel(p, u);
+    if (has_beta && sine >= parallel && sine < detail::nearly_parallel) {
+        return row_to_nearly_parallel(p, u);
+    }
     DhRow row;
     row.alpha = std::atan2(sine < parallel ? 0 : sine, u.z());
     if (sine < parallel) {
@@ -121,7 +124,7 @@ bool is_idle(const DhRow& row) {
 
 }  // namespace
 
-std::vector<DhRow> dh_rows(const Chain& chain, const VectorXd& parameters) {
+std::vector<DhRow> dh_rows(const Chain& chain, const VectorXd& parameters, bool has_beta) {
     const auto [axes, flange] = detail::find_driven_axes(chain, parameters);
     std::vector<DhRow> rows;
     Isometry3d frame = Isometry3d::Identity();
@@ -135,7 +138,7 @@ std::vector<DhRow> dh_rows(const Chain& chain, const VectorXd& parameters) {
         const detail::Line next = k + 1 < axes.size()
                                       ? axes[k + 1].line()
                                       : detail::Line{flange.translation(), flange.linear().col(2)};
-        DhRow row = row_to(frame, next);
+        DhRow row = row_to(frame, next, has_beta || k + 1 == axes.size());
         const Element* const end = k + 1 < axes.size()
                                        ? axes[k + 1].element
                                        : chain.elements().data() + chain.elements().size();
@@ -151,6 +154,55 @@ std::vector<DhRow> dh_rows(const Chain& chain, const VectorXd& parameters) {
     tool.d = rest.translation().z();
     if (!is_idle(tool)) add(tool);
     return rows;
+}
+
+ModifiedDh modified_dh(const Chain& chain, const VectorXd& parameters) {
+    ModifiedDh modified;
+    const Isometry3d half_turn(Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX()));
+    DhRow link;  // a and alpha in front of the next joint; behind the last one all of its row
+    for (const DhRow& row : dh_rows(chain, parameters, false)) {
+        if (row.joints.empty()) {
+            Isometry3d& fixed = modified.rows.empty() ? modified.base : modified.tool;
+            fixed = fixed * transform_of(row);
+            continue;
+        }
+        const JointTerm& term = row.joints.front();
+        const bool is_own = row.motion == Motion::Rotation && row.joints.size() == 1 &&
+                            std::abs(term.coefficient) == 1 &&
+                            term.joint == std::ssize(modified.rows);
+        if (!is_own) {
+            throw InputError(
+                "joint '" + chain.joint(term.joint).name +
+                "' does not turn one axis of its own in the order of the joints, as each row of a "
+                "modified Denavit-Hartenberg table has it");
+        }
+        DhRow joint = row;
+        joint.a = link.a;
+        joint.alpha = link.alpha;
+        link = {};
+        link.a = row.a;
+        link.alpha = row.alpha;
+        link.beta = row.beta;
+        if (term.coefficient < 0) {  // z and y axes of the joint's frame the other way
+            joint.alpha += std::numbers::pi;
+            joint.theta *= -1;
+            joint.d *= -1;
+            joint.joints.front().coefficient = 1;
+            link.alpha -= std::numbers::pi;
+        }
+        joint.beta = 0;
+        if (modified.rows.empty()) {
+            if (joint.alpha != 0) modified.base = modified.base * half_turn;
+            joint.alpha = 0;
+        }
+        joint.alpha = std::remainder(joint.alpha, 2 * std::numbers::pi);
+        modified.rows.push_back(joint);
+        modified.tool = transform_of(link);
+    }
+    if (std::ssize(modified.rows) != chain.joint_count()) {
+        throw InputError("a joint turns nothing, which a modified Denavit-Hartenberg table needs");
+    }
+    return modified;
 }
 
 std::vector<Element> dh_elements(const DhRow& row) {

@@ -87,6 +87,7 @@ struct ExportedRobot {
     std::optional<CalibratedUrdf> urdf;
     std::vector<DhRow> dh;           ///< empty: not asked for
     std::optional<UrFrames> frames;  ///< for a UR
+    std::optional<ModifiedDh> robodk = {};
     std::vector<ReadBack> read_back;
     std::optional<CorrectionMap> map = {};    ///< corrects the terms; nothing: not asked for
     std::optional<CameraPlaces> camera = {};  ///< nothing: not asked for

@@ -154,6 +154,12 @@ FlangeDifference write_ur_kinematics(const std::string& path, const std::string&
 FlangeDifference write_mujoco(const std::string& path, const std::string& title,
                               const Geometry& geometry);
 
+/// Parameters for RoboDK, a Python script (.py) that sends them: modified Denavit-Hartenberg rows
+/// in rad and mm, with frames before and behind. It was not tried in RoboDK. `table` is
+/// modified_dh() of the robot.
+FlangeDifference write_robodk(const std::string& path, const std::string& title,
+                              const ModifiedDh& table, const Chain& robot, const VectorXd& errors);
+
 /// Reads UR kinematics. Throws InputError with path:line:column for another file.
 UrFrames read_ur_kinematics(const std::string& path);
 

@@ -40,7 +40,24 @@ std::vector<Element> mdh_elements(const DhRow& row);
 /// own origin perpendicular to its own axis. The x axis may point either way: the row nearer to the
 /// chain's own elements is taken, where these are such rows. `parameters` are the chain's error
 /// parameters (rad or m); error terms, which no row can express, count as zero.
-std::vector<DhRow> dh_rows(const Chain& chain, const VectorXd& parameters);
+///
+/// Without `has_beta` rows between two joints follow the common normal whatever the angle: it may
+/// be kilometres away, and the rows' d as long.
+std::vector<DhRow> dh_rows(const Chain& chain, const VectorXd& parameters, bool has_beta = true);
+
+/// A chain of joints that turn as rows of the modified convention, mdh_elements(), for programs
+/// that know neither fixed rows nor beta: what is before the first axis and behind the last joint
+/// are frames of their own.
+struct ModifiedDh {
+    Isometry3d base =
+        Isometry3d::Identity();  ///< in front of the first row, whose a and alpha are 0
+    std::vector<DhRow> rows;     ///< one a joint, which turns it about +z
+    Isometry3d tool = Isometry3d::Identity();  ///< from behind the last row to the flange
+};
+
+/// Made of dh_rows() without beta. Throws InputError unless each joint turns one axis of its own,
+/// in the order of the chain and neither geared nor coupled.
+ModifiedDh modified_dh(const Chain& chain, const VectorXd& parameters);
 
 /// Joint frames of a six-joint robot, each in the previous one, at zero joint values:
 /// base_from_flange(q) = F1 RotZ(q1) F2 RotZ(q2) ... F6 RotZ(q6), as in descriptions of Universal

@@ -12,6 +12,7 @@
 #include "io/format/yaml_reader.hpp"
 #include "mujoco_model.hpp"
 #include "posewise/model/chain.hpp"
+#include "robodk_model.hpp"
 #include "urdf_tree.hpp"
 
 namespace posewise::io {
@@ -124,6 +125,13 @@ FlangeDifference write_mujoco(const std::string& path, const std::string& title,
                        without(robot, geometry.errors, {}), [&](const std::string& written) {
                            return read_mujoco(written, robot.joints());
                        });
+}
+
+FlangeDifference write_robodk(const std::string& path, const std::string& title,
+                              const ModifiedDh& table, const Chain& robot, const VectorXd& errors) {
+    return write_robot(
+        path, robodk_text(escape_controls(title), table), robot, without(robot, errors, {}),
+        [&](const std::string& written) { return read_robodk(written, robot.joints()); });
 }
 
 UrFrames read_ur_kinematics(const std::string& path) {
