@@ -64,7 +64,7 @@ TEST(BadCampaign, Keys) {
         {"sensor:", "sensr:", "14:1: unknown key 'sensr'; did you mean 'sensor'?"},
         {"  kind:", "  knid:", "15:3: unknown key 'knid' in sensor; did you mean 'kind'?"},
         {"  mat:", "  spreadsheet:",
-         "24:3: unknown key 'spreadsheet' in measurements; must be columns or mat"},
+         "24:3: unknown key 'spreadsheet' in measurements; must be columns, mat or observation"},
         {"sigma_mm", "sigma", "16:3: unknown key 'sigma' in sensor; did you mean 'sigma_mm'?"},
         {"seed: 7", "name: again", "22:1: key 'name' occurs twice, first in line 1; keep one"},
         {"sigma_mm: 0.05", "sigma_mm: 0.05\n  sigma_um: 50",

@@ -78,7 +78,7 @@ TEST(ReadCamera, KnowsIntrinsicsWithDeviations) {
     const auto error = [&](const std::string& bad) {
         return input_error_of([&] { with_camera(replaced(camera, "known: [cx, cy]", bad)); });
     };
-    EXPECT_NE(error("deviations: {fx: 2}").find("is of no intrinsic parameter; did you mean fx_px"),
+    EXPECT_NE(error("deviations: {fx: 2}").find("is of no intrinsic parameter; must be fx_px"),
               std::string::npos);
     EXPECT_NE(error("deviations: {fx_px: 0}").find("must be above 0"), std::string::npos);
     EXPECT_NE(error("deviations: {k3: 1}").find("is of no intrinsic parameter"), std::string::npos);
