@@ -155,11 +155,11 @@ inline Campaign two_boards(const Campaign& from, const CameraSetup& setup) {
                          {Isometry3d::Identity(), beside}));
 }
 
-/// Like roughly_known_camera(), one camera on the flange.
+/// A fisheye on the flange, of which some intrinsic parameters are known with a deviation.
 inline CameraSetup doubtful_on_flange() {
-    CameraSetup setup = roughly_known_camera();
-    setup.others.clear();
-    setup.is_on_flange = true;
+    CameraSetup setup = camera_on_flange();
+    setup.is_known = {true, true, true, true, true, false, true, true};
+    setup.deviations = {2e-3, 2e-3, 4e-3, 0, 0.01, 0, 0, 0};
     return setup;
 }
 

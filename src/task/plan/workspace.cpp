@@ -1,11 +1,13 @@
 #include "workspace.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "measurement/contact.hpp"
 #include "model/sampling.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/constraints.hpp"
+#include "posewise/measurement/measurements.hpp"
 
 namespace posewise::detail {
 
@@ -36,28 +38,41 @@ RowMatrixXd workspace_configurations(const Campaign& campaign, const Parameters&
     return workspace_configurations(placed, std::nullopt, count, seed);
 }
 
+namespace {
+
+/// At random poses that show what a sensor with a view needs, of those targets that are in view.
+std::optional<WorkspaceError> error_in_view(const Campaign& campaign, const Estimate& estimate,
+                                            Index count) {
+    const ViewedPoses drawn = viewed_poses(campaign, estimate.parameters, count, 1);
+    if (drawn.in_view == 0) return std::nullopt;
+    Measurements shown;
+    shown.configurations = drawn.configurations.topRows(drawn.in_view);
+    shown.observations = RowMatrixXd::Zero(drawn.in_view, campaign.sensor->row_count());
+    shown.is_seen = drawn.is_seen.topRows(drawn.in_view);
+    shown.ids.resize(static_cast<std::size_t>(drawn.in_view));
+    shown.first_sample.resize(shown.ids.size() + 1);
+    std::iota(shown.first_sample.begin(), shown.first_sample.end(), 0);
+    WorkspaceError error{expected_sample_error(campaign, estimate, shown), {}, {}};
+    if (!campaign.sensor->has_pixels()) return error;
+    error.place = expected_place_error(campaign, estimate, shown.configurations);
+    if (campaign.robot.parameter_count() == 0) return error;
+    error.robot = expected_robot_error(campaign, estimate, shown.configurations);
+    return error;
+}
+
+}  // namespace
+
 std::optional<WorkspaceError> expected_workspace_error(const Campaign& campaign,
                                                        const Estimate& estimate) {
     constexpr Index count = 200;
     if (campaign.sensor->has_contacts()) return std::nullopt;
     try {
-        // Where a camera does not see the board its pixels say nothing.
-        RowMatrixXd configurations;
-        if (campaign.sensor->has_view()) {
-            const ViewedPoses drawn = viewed_poses(campaign, estimate.parameters, count, 1);
-            configurations = drawn.configurations.topRows(drawn.in_view);
-        } else {
-            configurations = workspace_configurations(campaign, estimate.parameters, count, 1);
-        }
-        if (configurations.rows() == 0) return std::nullopt;
-        WorkspaceError error{
+        // What a camera does not see says nothing.
+        if (campaign.sensor->has_view()) return error_in_view(campaign, estimate, count);
+        const RowMatrixXd configurations =
+            workspace_configurations(campaign, estimate.parameters, count, 1);
+        return WorkspaceError{
             predict_errors(campaign, estimate, configurations).front().overall, {}, {}};
-        if (campaign.sensor->has_pixels()) {
-            error.place = expected_place_error(campaign, estimate, configurations);
-            if (campaign.robot.parameter_count() == 0) return error;
-            error.robot = expected_robot_error(campaign, estimate, configurations);
-        }
-        return error;
     } catch (const InputError&) {
         return std::nullopt;  // limits are missing, or the cell leaves no room
     }
