@@ -579,7 +579,11 @@ SensorWords CombinedSensor::words() const {
         add(readings, own.readings);
         add(places, own.place);
         add(unknowns, own.unknowns);
-        sentences.push_back(fmt::format("{}) {}", k + 1, own.sentence));
+        const auto& same = parts_[k].stated.same_camera;
+        sentences.push_back(
+            same ? fmt::format("{}) {} corners of another board, seen by the same camera as {})",
+                               k + 1, parts_[k].sensor().target_count(), *same + 1)
+                 : fmt::format("{}) {}", k + 1, own.sentence));
         if (k == 0) words.key = key_of(own.key, 0);
         for (const std::string& key : own.known) add(words.known, key_of(key, k));
         if (parts_[k].frame >= 0) add(words.known, fmt::format("sensors[{}].frame", k + 1));
