@@ -107,7 +107,9 @@ TEST_F(CombinedSensors, MayBeOneCameraBeforeTwoBoards) {
         EXPECT_LT(one["held_out"]["reprojection_rms_px"], 2);
     }
     const auto sensor = json_of("e.json")["sensor"];
-    EXPECT_TRUE(sensor.contains("camera.fx_px") && !sensor.contains("sensor2.camera.fx_px"));
+    run_well("export b.yaml e.json --camera camera.yaml");
+    EXPECT_NE(text_of("camera.yaml").find("flange_from_camera"), std::string::npos);
+    EXPECT_TRUE(sensor.contains("camera.fx_kpx") && !sensor.contains("sensor2.camera.fx_kpx"));
     EXPECT_EQ(run("plan b.yaml -k 14 --pool 1000 --workspace-poses 20 --time 5 -o p.json").code, 0);
     EXPECT_EQ(run("verify p.json").code, 0);
     run_well("select b.yaml -m b.csv -k 24 --starts 2 --proof 0.2 -o s.json");

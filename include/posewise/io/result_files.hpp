@@ -206,7 +206,8 @@ struct CameraPlaces {
     std::optional<Vector2d> image;         ///< width and height, px
     std::vector<PlacedCamera> others{};
 };
-/// The sensor must measure corners in an image, or poses of a board; else the result is empty.
+/// The sensor, or one of several, the first that does, must measure corners in an image, or poses
+/// of a board; else the result is empty.
 std::optional<CameraPlaces> camera_places(const Campaign& campaign, const Parameters& found);
 
 /// Throws InputError if the name does not end in .yaml, .yml, .urdf or .xacro.

@@ -101,6 +101,18 @@ bool is_yaml(const std::string& path) { return path.ends_with(".yaml") || path.e
 }  // namespace
 
 std::optional<CameraPlaces> camera_places(const Campaign& campaign, const Parameters& found) {
+    if (const auto* several = dynamic_cast<const CombinedSensor*>(campaign.sensor.get())) {
+        for (Index part = 0; part < several->part_count(); ++part) {
+            Campaign one = campaign;
+            one.sensor = several->part(part).sensor;
+            Parameters own = found;
+            own.world_from_base =
+                several->frame(part, found.sensor).inverse() * found.world_from_base;
+            own.sensor = several->unknowns_of(part, found.sensor);
+            if (auto places = camera_places(one, own)) return places;
+        }
+        return std::nullopt;
+    }
     const Isometry3d base_from_world = found.world_from_base.inverse();
     const auto with = [&](bool is_on_flange, const Isometry3d& on_flange) {
         return is_on_flange ? CameraPlaces{true, on_flange, base_from_world, {}, {}, {}}
