@@ -310,7 +310,8 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
     const Example example(16);
     Calibration calibration = calibrate(example.campaign, example.measurements, {.folds = 0});
     calibration.doubts.gross_error = 0.25;
-    calibration.doubts.sizes = {{"dq2", 40, 0, true, false}, {"Tx1", 25.5, 0, false, false}};
+    calibration.doubts.sizes = {{"dq2", 40, 0, &angle_units, false},
+                                {"Tx1", 25.5, 0, &length_units, false}};
     calibration.doubts.orientations = 0.5;
     EXPECT_EQ(
         describe_doubts(calibration, "m.csv"),
@@ -321,7 +322,8 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
             "far above the expected size: dq2 (40 times), Tx1 (25.5 times); are sign, unit and "
             "nominal value in the campaign right, and do the poses tell them apart?"}));
     for (int k = 1; k <= 5; ++k) {
-        calibration.doubts.sizes.push_back({"a" + std::to_string(k), 20.0 + k, 0, true, false});
+        calibration.doubts.sizes.push_back(
+            {"a" + std::to_string(k), 20.0 + k, 0, &angle_units, false});
     }
     EXPECT_NE(
         describe_doubts(calibration)
@@ -330,7 +332,7 @@ TEST(DescribeDoubts, NamesTheMeasurementsOfWhatIsWrongWithThem) {
                   "and 2 more; are sign"),
         std::string::npos);
     calibration.doubts = {};
-    calibration.doubts.sizes = {{"dq2", 3.5, 0.07, true, true}};
+    calibration.doubts.sizes = {{"dq2", 3.5, 0.07, &angle_units, true}};
     calibration.campaign.spread.by_name["dq2"] = 0.02;
     calibration.campaign.spread.is_prior = true;
     calibration.doubts.model_errors = {{9, 9e-4, false}};
