@@ -187,7 +187,7 @@ class CameraSensor final : public Sensor {
         return own_[static_cast<std::size_t>(camera)].first_error;
     }
     /// Of the pose of what is on the flange, where it is unknown.
-    Index first_of_place() const { return unknown_sizes().size(); }
+    Index first_of_place() const { return sizes_.size(); }
     /// The board as stated in the first camera's frame.
     Isometry3d camera_from_board(const Isometry3d& world_from_flange,
                                  const VectorXd& unknowns) const;
