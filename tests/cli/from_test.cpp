@@ -75,6 +75,7 @@ std::string without_names(const std::string& text) {
         if (std::regex_match(line, pose)) line = std::regex_replace(line, hundredths, "$1");
         if (line.starts_with("from:") || line.starts_with("plan:")) continue;
         if (line.starts_with("searched:")) continue;
+        if (line.starts_with("            the poses that it is from do not count")) continue;
         kept += line + '\n';
     }
     return kept;
