@@ -307,8 +307,9 @@ def _measured_inputs(
 
     if not isinstance(measurements, (list, tuple)) and not isinstance(plan, (list, tuple)):
         check_kind(plan, Plan, "plan")
+        single = plan if isinstance(plan, Plan) else None
         return given({
-            "measurements": table(measurements, "measurements"), "plan": result_input(plan)
+            "measurements": table(measurements, "measurements"), "plan": result_input(single)
         })
     tables = list(measurements) if isinstance(measurements, (list, tuple)) else [measurements]
     plans = list(plan) if isinstance(plan, (list, tuple)) else [plan]
