@@ -10,7 +10,7 @@ const YamlKeys file{
         {"sensor", "", "see below", "required, or `sensors`", ""},
         {"sensors", "",
          "instead of it several that measure the same robot together, a list with the keys of "
-         "`sensor` each; not sockets, and of those with pixels or poses one camera or poses",
+         "`sensor` each; not sockets, nor a camera beside poses",
          "one alone", "`[{kind: points, ...}, {kind: camera, ...}]`"},
         {"base", "", "where the instrument sees the robot's base",
          "made up; simulations need it, plans and random candidates where what poses tell depends "
