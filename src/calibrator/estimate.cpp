@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/statistics.hpp"
+#include "residual_lengths.hpp"
 
 namespace posewise {
 
@@ -103,6 +104,10 @@ RowMatrixXd squares_of(const Campaign& campaign, const Parameters& parameters,
 
 }  // namespace
 
+VectorXd detail::residual_lengths(const Eigen::Ref<const RowMatrixXd>& residuals) {
+    return without_gaps(rows_of_kind(residuals)).rowwise().norm();
+}
+
 RowMatrixXd squared_distances(const Campaign& campaign, const Parameters& parameters,
                               const Measurements& measurements) {
     const Sensor& sensor = *campaign.sensor;
@@ -124,16 +129,16 @@ Metrics make_metrics(const RowMatrixXd& residuals, Index length_count) {
     metrics.coordinate_count = std::min({length_count, residuals.cols(), Index{3}});
     metrics.has_orientation = residuals.cols() > length_count;
     if (metrics.point_count == 0) return metrics;
-    const RowMatrixXd points = rows_of_kind(residuals.leftCols(metrics.coordinate_count));
-    if (points.rows() > 0) {
-        VectorXd distances = without_gaps(points).rowwise().norm();
+    const auto points = residuals.leftCols(metrics.coordinate_count);
+    VectorXd distances = detail::residual_lengths(points);
+    if (distances.size() > 0) {
         std::sort(distances.begin(), distances.end());
-        metrics.distance_rms = distances.norm() / std::sqrt(static_cast<double>(points.rows()));
-        metrics.distance_max = distances[points.rows() - 1];
+        metrics.distance_rms = distances.norm() / std::sqrt(static_cast<double>(distances.size()));
+        metrics.distance_max = distances[distances.size() - 1];
         metrics.distance_mean = distances.mean();
         metrics.distance_p95 = quantile(distances, 0.95, detail::QuantileRule::Lower);
     }
-    for (Index axis = 0; axis < metrics.coordinate_count && points.rows() > 0; ++axis) {
+    for (Index axis = 0; axis < metrics.coordinate_count; ++axis) {
         const auto i = static_cast<std::size_t>(axis);
         const RowMatrixXd along = rows_of_kind(points.col(axis));
         if (along.rows() == 0) continue;
@@ -141,13 +146,12 @@ Metrics make_metrics(const RowMatrixXd& residuals, Index length_count) {
         metrics.coordinate_max[i] = along.cwiseAbs().maxCoeff();
     }
     if (metrics.has_orientation) {
-        const RowMatrixXd turns =
-            rows_of_kind(residuals.rightCols(residuals.cols() - length_count));
-        if (turns.rows() == 0) return metrics;
-        VectorXd angles = without_gaps(turns).rowwise().norm();
+        VectorXd angles =
+            detail::residual_lengths(residuals.rightCols(residuals.cols() - length_count));
+        if (angles.size() == 0) return metrics;
         std::sort(angles.begin(), angles.end());
-        metrics.orientation_rms = angles.norm() / std::sqrt(static_cast<double>(turns.rows()));
-        metrics.orientation_max = angles[turns.rows() - 1];
+        metrics.orientation_rms = angles.norm() / std::sqrt(static_cast<double>(angles.size()));
+        metrics.orientation_max = angles[angles.size() - 1];
         metrics.orientation_p95 = quantile(angles, 0.95, detail::QuantileRule::Lower);
     }
     return metrics;

@@ -30,14 +30,7 @@ struct IdentificationProblem {
     double deviation = 1;  ///< unit of the loss, in standard deviations as stated
 
     /// Numbers observed: those of the targets seen.
-    Index observation_count() const {
-        const Sensor& sensor = *campaign.sensor;
-        Index count = 0;
-        for (Index j = 0; j < means.is_seen.cols(); ++j) {
-            count += sensor.rows_of(j) * means.is_seen.col(j).count();
-        }
-        return count;
-    }
+    Index observation_count() const { return seen_row_count(*campaign.sensor, means.is_seen); }
     /// One equation for each parameter that has a prior: its coordinate is 0, give or take 1.
     Index prior_begin() const { return posewise::prior_begin(campaign); }
     Index prior_count() const { return posewise::prior_count(campaign); }

@@ -3,16 +3,15 @@
 namespace posewise::detail {
 
 PartAlone take_part(const Campaign& campaign, const CombinedSensor& combined, Index part,
-                    const Measurements& measurements) {
+                    const Measurements& measurements, const Parameters& registered) {
     const SensorPart& stated = combined.part(part);
-    PartAlone alone{campaign, measurements, {}};
+    PartAlone alone{campaign, measurements, combined.parameters_of(part, registered)};
     alone.campaign.sensor = stated.sensor;
     alone.campaign.prior.reset();
-    alone.campaign.nominal.sensor = combined.unknowns_of(part, campaign.nominal.sensor);
+    alone.campaign.nominal = combined.parameters_of(part, campaign.nominal);
     alone.campaign.has_nominal_targets = stated.has_nominal_unknowns;
-    const Isometry3d frame = combined.frame(part, campaign.nominal.sensor);
-    alone.campaign.nominal.world_from_base = frame.inverse() * campaign.nominal.world_from_base;
-    const bool is_same = stated.known_frame && frame.isApprox(Isometry3d::Identity(), 0);
+    const bool is_same =
+        stated.known_frame && stated.known_frame->isApprox(Isometry3d::Identity(), 0);
     if (!is_same) alone.campaign.base_is_known.fill(false);
     Measurements& measured = alone.measured;
     measured.observations = RowMatrixXd(measurements.observations.middleCols(
@@ -28,31 +27,28 @@ PartAlone take_part(const Campaign& campaign, const CombinedSensor& combined, In
     return alone;
 }
 
-PartAlone telling_part(const Campaign& campaign, const Measurements& measurements) {
+PartAlone telling_part(const Campaign& campaign, const Measurements& measurements,
+                       const Parameters& registered) {
     const auto* const combined = dynamic_cast<const CombinedSensor*>(campaign.sensor.get());
     for (const bool takes_pixels : {false, true}) {
         for (Index k = 0; combined != nullptr && k < combined->part_count(); ++k) {
             const Sensor& sensor = *combined->part(k).sensor;
             if (sensor.has_pixels() != takes_pixels || !sensor.observed_points()) continue;
-            PartAlone alone = take_part(campaign, *combined, k, measurements);
+            PartAlone alone = take_part(campaign, *combined, k, measurements, registered);
             if (alone.measured.configuration_count() > 0) return alone;
         }
     }
-    return {campaign, measurements, {}};
+    return {campaign, measurements, registered};
 }
 
 std::vector<PartAlone> parts_alone(const Campaign& campaign, const Measurements& measurements,
                                    const Parameters& registered) {
     const auto* const combined = dynamic_cast<const CombinedSensor*>(campaign.sensor.get());
     if (combined == nullptr) return {{campaign, measurements, registered}};
-    Campaign found = campaign;
-    found.nominal = registered;
     std::vector<PartAlone> parts;
     for (Index k = 0; k < combined->part_count(); ++k) {
-        PartAlone alone = take_part(campaign, *combined, k, measurements);
-        if (alone.measured.configuration_count() == 0) continue;
-        alone.registered = take_part(found, *combined, k, measurements).campaign.nominal;
-        parts.push_back(std::move(alone));
+        PartAlone alone = take_part(campaign, *combined, k, measurements, registered);
+        if (alone.measured.configuration_count() > 0) parts.push_back(std::move(alone));
     }
     return parts;
 }

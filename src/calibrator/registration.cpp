@@ -192,7 +192,8 @@ Start find_start_of_parts(const Campaign& campaign, const CombinedSensor& combin
     for (std::size_t k = 0; k < count; ++k) {
         const auto part = static_cast<Index>(k);
         const SensorPart& stated = combined.part(part);
-        const detail::PartAlone only = detail::take_part(campaign, combined, part, measurements);
+        const detail::PartAlone only =
+            detail::take_part(campaign, combined, part, measurements, campaign.nominal);
         // A camera that has found itself by one board needs no more than a view of another.
         const bool is_found = stated.same_camera && combined.has_only_shared_unknowns(part) &&
                               bases[static_cast<std::size_t>(*stated.same_camera)];

@@ -6,6 +6,7 @@
 
 #include "common.hpp"
 #include "options.hpp"
+#include "planner/focus_names.hpp"
 
 namespace posewise::cli {
 
@@ -18,7 +19,7 @@ void add_focus_option(CLI::App& command, RequestArguments& arguments) {
         .add_option("--focus", arguments.focus,
                     "Parameters that count: all, the robot's, or place, where targets, tool, "
                     "camera or board are on the flange (hand-eye); others are estimated along")
-        ->check(CLI::IsMember({"all", "robot", "place"}))
+        ->check(CLI::IsMember(detail::words_of(detail::focus_names)))
         ->capture_default_str();
 }
 
@@ -96,9 +97,7 @@ PlanRequest make_request(const RequestArguments& arguments) {
     if (!arguments.criterion.empty()) request.criterion = parse_criterion(arguments.criterion);
     request.has_prior = arguments.prior.value_or(false);
     request.seed = arguments.seed;
-    request.focus = arguments.focus == "robot"   ? Focus::Robot
-                    : arguments.focus == "place" ? Focus::Place
-                                                 : Focus::All;
+    request.focus = *detail::find_named(detail::focus_names, arguments.focus);
     request.sources.estimate = arguments.earlier.from;
     request.earlier = arguments.earlier.use();
     return request;

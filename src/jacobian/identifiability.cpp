@@ -263,8 +263,7 @@ Index least_pose_count(const Campaign& stated, const StopSignal& stop) {
     const detail::ShownPoses poses = detail::poses_to_judge(campaign);
     Index rows = 1;  // of a pose, the most
     for (Index i = 0; i < poses.is_seen.rows(); ++i) {
-        const auto seen = seen_rows(*campaign.sensor, poses.is_seen.row(i));
-        rows = std::max(rows, static_cast<Index>(std::ssize(seen)));
+        rows = std::max(rows, seen_row_count(*campaign.sensor, poses.is_seen.row(i)));
     }
     const VectorXd sizes = detail::sizes_of(campaign);
     const auto suffices = [&](Index count) {

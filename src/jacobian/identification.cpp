@@ -39,8 +39,8 @@ Blocks fill_blocks(const Campaign& campaign, const Parameters& parameters,
     const Sensor& sensor = *campaign.sensor;
     Blocks blocks;
     for (Index i = 0; i < configurations.rows(); ++i) {
-        const auto seen = seen_rows(sensor, repeats.row(i).array() > 0);
-        const Index rows = std::min(static_cast<Index>(std::ssize(seen)), most_rows);
+        const Index seen = seen_row_count(sensor, repeats.row(i).array() > 0);
+        const Index rows = std::min(seen, most_rows);
         blocks.first_row.push_back(blocks.first_row.back() + rows);
     }
     blocks.matrix.resize(blocks.first_row.back(), parameter_count(campaign));

@@ -115,6 +115,12 @@ std::string prefix_of(Index camera) {
     return camera == 0 ? "camera." : fmt::format("camera{}.", camera + 1);
 }
 
+/// The camera, if it is one; whether its unknowns are known or not.
+const CameraSensor* as_camera(const Sensor& sensor) {
+    const auto* const known = dynamic_cast<const detail::KnownSensor*>(&sensor);
+    return dynamic_cast<const CameraSensor*>(known != nullptr ? &known->original() : &sensor);
+}
+
 }  // namespace
 
 Isometry3d detail::frame_from(const Eigen::Ref<const VectorXd>& six) {
@@ -386,16 +392,6 @@ SensorWords CameraSensor::words() const {
                     detail::format_short(setup_.sigma), growth_words(setup_.growth),
                     depth_words(setup_.view))};
 }
-
-namespace {
-
-/// The camera, if it is one; whether its unknowns are known or not.
-const CameraSensor* as_camera(const Sensor& sensor) {
-    const auto* const known = dynamic_cast<const detail::KnownSensor*>(&sensor);
-    return dynamic_cast<const CameraSensor*>(known != nullptr ? &known->original() : &sensor);
-}
-
-}  // namespace
 
 Index first_corner(const Sensor& sensor) {
     const CameraSensor* const camera = as_camera(sensor);

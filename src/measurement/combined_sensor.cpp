@@ -7,10 +7,12 @@
 #include <set>
 #include <utility>
 
+#include "camera_view.hpp"
 #include "core/text.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/measurement/camera_sensor.hpp"
+#include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/model/chain.hpp"
 
@@ -287,17 +289,18 @@ VectorXd CombinedSensor::unknowns(const std::vector<VectorXd>& of_parts,
     return all;
 }
 
-Isometry3d CombinedSensor::frame(Index part, const VectorXd& unknowns) const {
-    const Index first = of(part).frame;
-    if (first < 0) return *of(part).stated.known_frame;
-    Isometry3d frame = Isometry3d::Identity();
-    frame.translation() = unknowns.segment<3>(first);
-    frame.linear() = rotation_from_vector(unknowns.segment<3>(first + 3));
-    return frame;
+Parameters CombinedSensor::parameters_of(Index part, const Parameters& all) const {
+    return {part_from_first(of(part), all.sensor) * all.world_from_base, all.robot,
+            unknowns_of(part, all.sensor)};
 }
 
-Isometry3d CombinedSensor::part_from_first(const Part& part, const VectorXd& unknowns) const {
-    return frame(&part - parts_.data(), unknowns).inverse();
+Isometry3d CombinedSensor::frame(Index part, const VectorXd& unknowns) const {
+    return frame_of(of(part), unknowns);
+}
+
+Isometry3d CombinedSensor::frame_of(const Part& part, const VectorXd& unknowns) const {
+    if (part.frame < 0) return *part.stated.known_frame;
+    return detail::frame_from(unknowns.segment<of_frame>(part.frame));
 }
 
 // With R, p where the part's frame is in the first one's, a point is at y = R^T (x - p). A step dp
@@ -333,16 +336,22 @@ void CombinedSensor::predict(const Isometry3d& world_from_flange, const VectorXd
     }
 }
 
+TwistMatrix CombinedSensor::part_twists(const Part& part, const Isometry3d& part_from_first,
+                                        const TwistMatrix& twists, bool has_unknowns,
+                                        const VectorXd& unknowns) const {
+    const TwistMatrix by_frame = has_unknowns ? frame_twists(part, unknowns) : TwistMatrix(6, 0);
+    TwistMatrix all(6, twists.cols() + by_frame.cols());
+    all << as_seen_from(part_from_first, twists), by_frame;
+    return all;
+}
+
 void CombinedSensor::differentiate(const Isometry3d& world_from_flange, const TwistMatrix& twists,
                                    const VectorXd& unknowns,
                                    Eigen::Ref<RowMatrixXd> J_measured_parameters) const {
     const bool has_unknowns = J_measured_parameters.cols() > twists.cols();
     for (const Part& part : parts_) {
         const Isometry3d from_first = part_from_first(part, unknowns);
-        const TwistMatrix by_frame =
-            has_unknowns ? frame_twists(part, unknowns) : TwistMatrix(6, 0);
-        TwistMatrix all(6, twists.cols() + by_frame.cols());
-        all << as_seen_from(from_first, twists), by_frame;
+        const TwistMatrix all = part_twists(part, from_first, twists, has_unknowns, unknowns);
         const Index own = has_unknowns ? std::ssize(part.unknowns) : 0;
         RowMatrixXd J(part.sensor().row_count(), all.cols() + own);
         part.sensor().differentiate(from_first * world_from_flange, all, unknowns(part.unknowns),
@@ -358,10 +367,7 @@ void CombinedSensor::differentiate_along(const Isometry3d& world_from_flange,
     const bool has_unknowns = J_rate.cols() > twists.cols();
     for (const Part& part : parts_) {
         const Isometry3d from_first = part_from_first(part, unknowns);
-        const TwistMatrix by_frame =
-            has_unknowns ? frame_twists(part, unknowns) : TwistMatrix(6, 0);
-        TwistMatrix all(6, twists.cols() + by_frame.cols());
-        all << as_seen_from(from_first, twists), by_frame;
+        const TwistMatrix all = part_twists(part, from_first, twists, has_unknowns, unknowns);
         TwistMatrix rates = TwistMatrix::Zero(6, all.cols());
         rates.leftCols(twists.cols()) = as_seen_from(from_first, twist_rates);
         const Index own = has_unknowns ? std::ssize(part.unknowns) : 0;
@@ -462,7 +468,7 @@ SightLines CombinedSensor::sight_lines(const Isometry3d& world_from_flange,
                                        const VectorXd& unknowns) const {
     SightLines all;
     for (const Part& part : parts_) {
-        const Isometry3d first_from_part = frame(&part - parts_.data(), unknowns);
+        const Isometry3d first_from_part = frame_of(part, unknowns);
         const SightLines own = part.sensor().sight_lines(
             first_from_part.inverse() * world_from_flange, unknowns(part.unknowns));
         if (own.cols() == 0) continue;

@@ -11,6 +11,19 @@ Targets known_targets(const Targets& targets, const VectorXd& unknowns) {
     return Targets(positions);
 }
 
+/// Each part with its unknowns known, where its frame is, too.
+std::shared_ptr<const Sensor> known_parts(const CombinedSensor& combined,
+                                          const VectorXd& unknowns) {
+    std::vector<SensorPart> parts;
+    for (Index k = 0; k < combined.part_count(); ++k) {
+        std::shared_ptr<const Sensor> sensor = combined.part(k).sensor;
+        const VectorXd own = combined.unknowns_of(k, unknowns);
+        if (own.size() > 0) sensor = std::make_shared<KnownSensor>(sensor, own);
+        parts.push_back({std::move(sensor), combined.frame(k, unknowns)});
+    }
+    return std::make_shared<CombinedSensor>(std::move(parts));
+}
+
 }  // namespace
 
 KnownSensor::KnownSensor(std::shared_ptr<const Sensor> sensor, VectorXd unknowns)
@@ -49,23 +62,6 @@ std::optional<ObservedPoints> KnownSensor::observed_points() const {
                           [](const VectorXd& coordinates) { return coordinates; },
                           {}};
 }
-
-namespace {
-
-/// Each part with its unknowns known, where its frame is, too.
-std::shared_ptr<const Sensor> known_parts(const CombinedSensor& combined,
-                                          const VectorXd& unknowns) {
-    std::vector<SensorPart> parts;
-    for (Index k = 0; k < combined.part_count(); ++k) {
-        std::shared_ptr<const Sensor> sensor = combined.part(k).sensor;
-        const VectorXd own = combined.unknowns_of(k, unknowns);
-        if (own.size() > 0) sensor = std::make_shared<KnownSensor>(sensor, own);
-        parts.push_back({std::move(sensor), combined.frame(k, unknowns)});
-    }
-    return std::make_shared<CombinedSensor>(std::move(parts));
-}
-
-}  // namespace
 
 Campaign with_known_sensor(Campaign campaign, const VectorXd& unknowns) {
     if (unknowns.size() == 0) return campaign;

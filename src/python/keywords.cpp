@@ -3,6 +3,7 @@
 #include "calibrator/loss.hpp"
 #include "core/effort.hpp"
 #include "io/format/fields.hpp"
+#include "planner/focus_names.hpp"
 #include "posewise/core/types.hpp"
 #include "task/calibration/calibration_options.hpp"
 
@@ -21,8 +22,6 @@ constexpr Index most_drawn = 10000000;
 constexpr double degree = to_radians(1);
 constexpr double millimetre = 1e-3;
 
-constexpr Names<Focus, 3> foci{
-    {{Focus::All, "all"}, {Focus::Robot, "robot"}, {Focus::Place, "place"}}};
 constexpr Names<bool, 2> sizes{{{false, "stated"}, {true, "learned"}}};
 constexpr Names<ErrorQuantity, 3> quantities{{{ErrorQuantity::Rms, "rms"},
                                               {ErrorQuantity::Percentile95, "p95"},
@@ -99,7 +98,7 @@ PlanCall read_call(const Stated& stated) {
     stated("force", call.is_forced);
     stated("held", request.sources.augment);
     stated("estimate", request.sources.estimate);
-    stated("focus", request.focus, OneOf(foci));
+    stated("focus", request.focus, OneOf(detail::focus_names));
     stated("repeats", request.repeats, Number{.least = 1, .most = 1e9});
     stated("starts", request.starts, Count{0, 1000000});
     stated("seed", request.seed);

@@ -9,6 +9,7 @@
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/task/choice.hpp"
 #include "support/campaign_from.hpp"
+#include "support/combined.hpp"
 #include "support/coverage.hpp"
 #include "task/calibration/expected_distance.hpp"
 #include "task/plan/workspace.hpp"
@@ -18,21 +19,8 @@ namespace {
 
 /// `height`: of the robot's base, along the board's z, which points into the table, mm.
 io::CampaignFile hand_eye(int height = 0) {
-    return testing::campaign_from(R"(
-name: hand and eye
-robot:
-  errors: none
-  joints:
-    q1: {limits_deg: [-180, 180]}
-    q2: {limits_deg: [-180, 0]}
-    q3: {limits_deg: [-150, 150]}
-    q4: {limits_deg: [-180, 180]}
-    q5: {limits_deg: [-180, 180]}
-    q6: {limits_deg: [-180, 180]}
-  elements:
-    [Rz q1, Tz 89.2 mm, Rx 90 deg, Rz q2, Tx -425 mm, Rz q3, Tx -392 mm, Rz q4, Tz 109.3 mm,
-     Rx 90 deg, Rz q5, Tz 94.75 mm, Rx -90 deg, Rz q6, Tz 82.5 mm]
-sensor:
+    return testing::campaign_from("name: hand and eye\nrobot:\n  errors: none\n" +
+                                  testing::small_arm + R"(sensor:
   kind: camera
   camera: flange
   image_px: [1280, 960]

@@ -5,10 +5,8 @@
 /// Campaign files of several sensors that see one arm.
 namespace posewise::testing {
 
-inline const std::string combined_arm = R"(robot:
-  errors: geometric
-  class: collaborative
-  joints:
+/// Joints and elements of a small arm, for its section `robot`.
+inline const std::string small_arm = R"(  joints:
     q1: {limits_deg: [-180, 180]}
     q2: {limits_deg: [-180, 0]}
     q3: {limits_deg: [-150, 150]}
@@ -19,6 +17,9 @@ inline const std::string combined_arm = R"(robot:
     [Rz q1, Tz 89.2 mm, Rx 90 deg, Rz q2, Tx -425 mm, Rz q3, Tx -392 mm, Rz q4, Tz 109.3 mm,
      Rx 90 deg, Rz q5, Tz 94.75 mm, Rx -90 deg, Rz q6, Tz 82.5 mm]
 )";
+
+inline const std::string combined_arm =
+    "robot:\n  errors: geometric\n  class: collaborative\n" + small_arm;
 
 inline const std::string tracker_part = R"(  - kind: points
     noise: {range_um: 15, angle_urad: 15}
@@ -49,9 +50,8 @@ inline const std::string tracker_alone = R"(name: tracker alone
   targets: {position_mm: [[30, -40, 40], [-60, 30, 30]]}
 )";
 
-/// A camera on the flange before a board, a tip that touches faces whose places are found.
-inline const std::string camera_and_planes =
-    "name: camera and planes\n" + combined_arm +
+/// A camera on the flange before a board, the first one.
+inline const std::string camera_part =
     R"(base: {position_mm: [87, 550, 0], rpy_deg: [180, 0, 90]}
 sensors:
   - kind: camera
@@ -63,7 +63,12 @@ sensors:
     board: {columns: 8, rows: 5, square_mm: 25}
     place: {position_mm: [30, 40, 60], rpy_deg: [0, 0, 0]}
     view: {most_tilt_deg: 55, least_corners: 20}
-  - kind: planes
+)";
+
+/// A camera on the flange before a board, a tip that touches faces whose places are found.
+inline const std::string camera_and_planes = "name: camera and planes\n" + combined_arm +
+                                             camera_part +
+                                             R"(  - kind: planes
     sigma_mm: 0.02
     planes:
       - {normal: [0, 0, -1], offset_mm: 0}
@@ -74,19 +79,8 @@ sensors:
 )";
 
 /// A camera on the flange before two boards that it seldom sees together.
-inline const std::string two_boards = "name: two boards\n" + combined_arm +
-                                      R"(base: {position_mm: [87, 550, 0], rpy_deg: [180, 0, 90]}
-sensors:
-  - kind: camera
-    camera: flange
-    image_px: [1280, 960]
-    sigma_px: 0.3
-    intrinsics: {fx_px: 1210, fy_px: 1210, cx_px: 640, cy_px: 480, known: false,
-                 distortion: {model: brown_conrady, coefficients: [-0.1, 0, 0, 0, 0]}}
-    board: {columns: 8, rows: 5, square_mm: 25}
-    place: {position_mm: [30, 40, 60], rpy_deg: [0, 0, 0]}
-    view: {most_tilt_deg: 55, least_corners: 20}
-  - kind: camera
+inline const std::string two_boards = "name: two boards\n" + combined_arm + camera_part +
+                                      R"(  - kind: camera
     same_camera: 1
     board: {columns: 5, rows: 4, square_mm: 30, first_point: 0}
     view: {least_corners: 12}

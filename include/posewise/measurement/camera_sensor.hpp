@@ -186,7 +186,7 @@ class CameraSensor final : public Sensor {
     Index first_intrinsic_error(Index camera) const {
         return own_[static_cast<std::size_t>(camera)].first_error;
     }
-    /// Of the pose of what is on the flange, where it is unknown.
+    /// The first of six unknowns, the pose of what is on the flange, where that is not known.
     Index first_of_place() const { return sizes_.size(); }
     /// The board as stated in the first camera's frame.
     Isometry3d camera_from_board(const Isometry3d& world_from_flange,

@@ -37,8 +37,11 @@ SeenTargets seen_targets(const std::vector<Index>& targets, Index target_count);
 
 /// Rows of an observation that belong to the targets seen, `rows_per_target` each. Ascending.
 std::vector<Index> seen_rows(const SeenTargets& is_seen, Index rows_per_target);
-/// The same of a sensor, whose targets may have different numbers.
+/// Rows of a sensor's observation that belong to the targets seen. Ascending.
 std::vector<Index> seen_rows(const Sensor& sensor, const SeenTargets& is_seen);
+/// How many numbers the targets seen have, in all poses or samples: rows of `is_seen`.
+template <typename Derived>
+Index seen_row_count(const Sensor& sensor, const Eigen::DenseBase<Derived>& is_seen);
 
 /// Numbers of the targets seen as text, from 1: "1 3".
 std::string target_numbers(const SeenTargets& is_seen);
@@ -261,8 +264,8 @@ class Sensor {
                                    const VectorXd& /*unknowns*/) const {
         return {};
     }
-    /// For a sensor of several parts: where one shows fewer than it needs by these clearances, none
-    /// of its targets is in sight. view_clearances() are so already.
+    /// For a sensor of several parts: makes all clearances of a part negative if these let it show
+    /// fewer targets than it needs. view_clearances() has done so; other obstacles may hide more.
     virtual void hide_incomplete_parts(Eigen::Ref<VectorXd> /*clearances*/) const {}
     /// Whether a sensor with a view may read these numbers of a target: inside of an image.
     virtual bool is_readable(Index /*target*/, const ConstNumbers& /*observation*/) const {
@@ -350,5 +353,12 @@ class Sensor {
     Index count_angles() const;
     bool counts_points() const { return has_pixels() || is_combined(); }
 };
+
+template <typename Derived>
+Index seen_row_count(const Sensor& sensor, const Eigen::DenseBase<Derived>& is_seen) {
+    Index count = 0;
+    for (Index j = 0; j < is_seen.cols(); ++j) count += sensor.rows_of(j) * is_seen.col(j).count();
+    return count;
+}
 
 }  // namespace posewise

@@ -365,6 +365,8 @@ class SocketSensor final : public Sensor {
     std::vector<Index> unknown_index_;  ///< index of each socket's first unknown
 };
 
+struct Parameters;
+
 /// One of several instruments that measure together.
 struct SensorPart {
     std::shared_ptr<const Sensor> sensor;
@@ -390,7 +392,7 @@ class CombinedSensor final : public Sensor {
     /// Throws InputError if there are fewer than two, if one is combined itself or is touched
     /// (has_contacts()), records the inverse of poses, if one sees pixels beside another's angles,
     /// if the first one's known frame is not the identity, or if a part is said to be of a camera
-    /// that another part is not, or that is fixed and in another frame.
+    /// that another part is not.
     explicit CombinedSensor(std::vector<SensorPart> parts);
 
     Index part_count() const { return static_cast<Index>(parts_.size()); }
@@ -403,6 +405,8 @@ class CombinedSensor final : public Sensor {
     bool has_only_shared_unknowns(Index part) const;
     /// The unknowns of one part, from all.
     VectorXd unknowns_of(Index part, const VectorXd& unknowns) const;
+    /// What a part alone has of all parameters: the base in its own frame, its unknowns.
+    Parameters parameters_of(Index part, const Parameters& all) const;
     /// All unknowns from those of each part and where its frame is in the first one's.
     VectorXd unknowns(const std::vector<VectorXd>& of_parts,
                       const std::vector<Isometry3d>& frames) const;
@@ -482,12 +486,20 @@ class CombinedSensor final : public Sensor {
     };
     const Part& of(Index part) const { return parts_[static_cast<std::size_t>(part)]; }
     const Part& of_row(Index row) const;
-    /// Twists by the frame's unknowns in the frame of a part, six of them.
+    /// Twists by the frame's unknowns in the frame of a part: six, or none if it is known.
     TwistMatrix frame_twists(const Part& part, const VectorXd& unknowns) const;
     /// Of a part's derivative its rows and columns among all.
     void take_in(const Part& part, const RowMatrixXd& J, Index twists,
                  Eigen::Ref<RowMatrixXd> J_all) const;
-    Isometry3d part_from_first(const Part& part, const VectorXd& unknowns) const;
+    Isometry3d frame_of(const Part& part, const VectorXd& unknowns) const;
+    Isometry3d part_from_first(const Part& part, const VectorXd& unknowns) const {
+        return frame_of(part, unknowns).inverse();
+    }
+    /// Twists of the first one's frame as a part has them, and if they are asked for, those by its
+    /// unknown frame behind them.
+    TwistMatrix part_twists(const Part& part, const Isometry3d& part_from_first,
+                            const TwistMatrix& twists, bool has_unknowns,
+                            const VectorXd& unknowns) const;
 
     std::vector<Part> parts_;
     Targets targets_;

@@ -257,9 +257,9 @@ SensorSection make_camera(const YamlValue& board, CameraSetup setup, const Isome
 SensorSection read_another_board(const YamlValue& value, const CameraSensor& camera) {
     const YamlMap sensor(value, keys::sensor, "camera");
     CameraSetup setup = camera.setup();
+    const std::set<std::string_view> own{"kind", "same_camera", "board", "view",
+                                         setup.is_on_flange ? "frame" : "place"};
     for (const YamlEntry& entry : value.entries()) {
-        const std::set<std::string_view> own{"kind", "same_camera", "board", "view",
-                                             setup.is_on_flange ? "frame" : "place"};
         if (own.contains(entry.key)) continue;
         throw entry.value.error(fmt::format(
             "is that of the same camera, stated before; must be left out ({} are its own)",

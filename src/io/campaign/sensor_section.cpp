@@ -392,10 +392,8 @@ constexpr std::array<std::pair<std::string_view, ReadKind>, 6> kinds{{{"points",
                                                                       {"sockets", read_sockets}}};
 
 YamlValue kind_of(const YamlValue& sensor) {
-    for (const YamlEntry& entry : sensor.entries()) {
-        if (entry.key == "kind") return entry.value;
-    }
-    return YamlMap(sensor, keys::sensor).require("kind");
+    const auto kind = find_of(sensor, "kind");
+    return kind ? *kind : YamlMap(sensor, keys::sensor).require("kind");
 }
 
 SensorSection read_kind(const YamlValue& value) {
@@ -409,13 +407,6 @@ SensorSection read_kind(const YamlValue& value) {
     throw kind.error("is " + quote(name) + "; " + suggest(name, names));
 }
 
-std::optional<YamlValue> find_entry(const YamlValue& sensor, std::string_view key) {
-    for (const YamlEntry& entry : sensor.entries()) {
-        if (entry.key == key) return entry.value;
-    }
-    return std::nullopt;
-}
-
 const CameraSensor* as_camera(const std::vector<SensorPart>& parts, Index part) {
     return dynamic_cast<const CameraSensor*>(parts[static_cast<std::size_t>(part)].sensor.get());
 }
@@ -423,7 +414,7 @@ const CameraSensor* as_camera(const std::vector<SensorPart>& parts, Index part) 
 /// Which of the sensors before it a further one is a camera of, by its number; nothing: of none.
 std::optional<Index> read_same_camera(const YamlValue& sensor,
                                       const std::vector<SensorPart>& before) {
-    const auto value = find_entry(sensor, "same_camera");
+    const auto value = find_of(sensor, "same_camera");
     if (!value) return std::nullopt;
     const auto number = static_cast<Index>(value->natural_number());
     const bool is_before = number >= 1 && number <= std::ssize(before);
@@ -445,7 +436,7 @@ struct FrameSection {
 };
 
 FrameSection read_sensor_frame(const YamlValue& sensor, bool is_first) {
-    const auto value = find_entry(sensor, "frame");
+    const auto value = find_of(sensor, "frame");
     const Isometry3d same = Isometry3d::Identity();
     if (is_first && value) {
         throw value->error("is of the first sensor, whose frame is the world; must be left out");
@@ -468,7 +459,7 @@ FrameSection read_sensor_frame(const YamlValue& sensor, bool is_first) {
 
 SensorSection read_sensor(const YamlValue& value) {
     for (const char* const key : {"frame", "same_camera"}) {
-        const auto found = find_entry(value, key);
+        const auto found = find_of(value, key);
         if (!found) continue;
         throw found->error(
             "is of a further one of several sensors (key 'sensors'); must be left out");

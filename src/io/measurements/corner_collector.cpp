@@ -13,8 +13,7 @@ namespace {
 /// "7", or of several cameras "7 of camera 2", of several sensors "7 of sensor 2".
 std::string name_of_corner(const Sensor& sensor, Index target) {
     const auto sensors = corner_sensors(sensor);
-    std::size_t of = sensors.size() - 1;
-    while (sensors[of].first_target > target) --of;
+    const std::size_t of = sensor_of(sensors, target);
     const CornerSensor& one = sensors[of];
     const Index own = target - one.first_target;
     std::string name = std::to_string(first_corner(*one.sensor) + own % one.corners());

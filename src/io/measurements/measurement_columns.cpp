@@ -73,6 +73,12 @@ std::vector<CornerSensor> corner_sensors(const Sensor& sensor) {
     return sensors;
 }
 
+std::size_t sensor_of(const std::vector<CornerSensor>& sensors, Index target) {
+    std::size_t of = sensors.size() - 1;
+    while (sensors[of].first_target > target) --of;
+    return of;
+}
+
 std::vector<std::string_view> corner_columns(const Sensor& sensor) {
     const auto sensors = corner_sensors(sensor);
     std::vector<std::string_view> names{point_column};

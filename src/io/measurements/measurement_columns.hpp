@@ -100,6 +100,8 @@ struct CornerSensor {
     Index corners() const { return sensor->target_count() / cameras(); }
 };
 std::vector<CornerSensor> corner_sensors(const Sensor& sensor);
+/// The index of the one that sees a target.
+std::size_t sensor_of(const std::vector<CornerSensor>& sensors, Index target);
 /// "point", and "camera" and "sensor" where a row must state them.
 std::vector<std::string_view> corner_columns(const Sensor& sensor);
 

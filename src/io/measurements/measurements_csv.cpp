@@ -323,14 +323,11 @@ class RowReader {
 
     /// The sensor that sees a target, if it is a camera, and the number of its camera.
     std::pair<const CameraSensor*, Index> camera_of(Index target) const {
-        const Sensor* sensor = campaign_.sensor.get();
-        if (const auto* const combined = dynamic_cast<const CombinedSensor*>(sensor)) {
-            const Index part = combined->part_of(target);
-            sensor = combined->part(part).sensor.get();
-            target -= combined->first_target(part);
-        }
-        const auto* const camera = dynamic_cast<const CameraSensor*>(sensor);
-        return {camera, camera == nullptr ? 0 : target / camera->corner_count()};
+        const detail::CornerSensor& of =
+            corner_sensors_[detail::sensor_of(corner_sensors_, target)];
+        const auto* const camera = dynamic_cast<const CameraSensor*>(of.sensor);
+        const Index own = target - of.first_target;
+        return {camera, camera == nullptr ? 0 : own / camera->corner_count()};
     }
 
     /// The camera of the row at hand, counted from 0.

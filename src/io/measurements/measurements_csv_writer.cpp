@@ -45,13 +45,12 @@ std::string observation_cells(const Sensor& sensor, const Measurements& measurem
 }
 
 /// A row for each corner seen: its place in px and its number.
-void write_corners(const Sensor& sensor, const Measurements& measurements, Index sample,
-                   const std::string& before, std::string& text) {
-    const auto columns = detail::corner_columns(sensor);
+void write_corners(const std::vector<detail::CornerSensor>& sensors,
+                   const std::vector<std::string_view>& columns, const Measurements& measurements,
+                   Index sample, const std::string& before, std::string& text) {
     const auto has = [&](std::string_view name) {
         return std::ranges::find(columns, name) != columns.end();
     };
-    const auto sensors = detail::corner_sensors(sensor);
     for (std::size_t k = 0; k < sensors.size(); ++k) {
         const detail::CornerSensor& one = sensors[k];
         for (Index own = 0; own < one.sensor->target_count(); ++own) {
@@ -112,10 +111,10 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
     }
     const bool has_contact = campaign.sensor->has_contacts();
     if (has_contact) fmt::format_to(out, ",{}", detail::contact);
-    if (has_corners) {
-        for (const auto& name : detail::corner_columns(*campaign.sensor))
-            text.append(1, ',') += name;
-    }
+    const auto sensors = detail::corner_sensors(*campaign.sensor);
+    const auto corner_columns =
+        has_corners ? detail::corner_columns(*campaign.sensor) : std::vector<std::string_view>();
+    for (const std::string_view name : corner_columns) fmt::format_to(out, ",{}", name);
     text += '\n';
     for (Index i = 0; i < measurements.configuration_count(); ++i) {
         const auto k = static_cast<std::size_t>(i);
@@ -125,7 +124,7 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
             if (has_corners) {
                 const std::string before =
                     fmt::format("{},{}{}", detail::csv_field(measurements.ids[k]), sample, joints);
-                write_corners(*campaign.sensor, measurements, row, before, text);
+                write_corners(sensors, corner_columns, measurements, row, before, text);
                 continue;
             }
             fmt::format_to(

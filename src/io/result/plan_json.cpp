@@ -11,6 +11,7 @@
 #include "io/format/atomic_file.hpp"
 #include "io/format/fields.hpp"
 #include "io/format/units.hpp"
+#include "planner/focus_names.hpp"
 #include "posewise/io/result_files.hpp"
 
 namespace posewise::detail {
@@ -31,9 +32,6 @@ constexpr Names<CandidateKind, 5> candidate_kinds{
      {CandidateKind::Random, "random"},
      {CandidateKind::Blocks, "blocks"},
      {CandidateKind::Pool, "pool"}}};
-
-constexpr Names<Focus, 3> foci{
-    {{Focus::All, "all"}, {Focus::Robot, "robot"}, {Focus::Place, "place"}}};
 
 constexpr Names<bool EarlierUse::*, 2> moved_parts{
     {{&EarlierUse::has_new_base, "base"}, {&EarlierUse::has_new_targets, "targets"}}};
@@ -243,7 +241,7 @@ void problem_fields(const Fields& file, Plan& plan, const FilePath& path) {
     file("pose_count", request.pose_count,
          Count{1, plan.is_continuous() ? most_continuous_poses : most_poses});
     file("prior", request.has_prior);
-    file("focus", request.focus, OneOf(foci));
+    file("focus", request.focus, OneOf(focus_names));
     file("augment", sources.augment, path);
     file.optional("measured_plan", !sources.measured_plan.empty(), sources.measured_plan, path);
     file.optional("points_unit", !sources.points_unit.empty(), sources.points_unit);

@@ -105,11 +105,9 @@ std::optional<CameraPlaces> camera_places(const Campaign& campaign, const Parame
         for (Index part = 0; part < several->part_count(); ++part) {
             Campaign one = campaign;
             one.sensor = several->part(part).sensor;
-            Parameters own = found;
-            own.world_from_base =
-                several->frame(part, found.sensor).inverse() * found.world_from_base;
-            own.sensor = several->unknowns_of(part, found.sensor);
-            if (auto places = camera_places(one, own)) return places;
+            if (auto places = camera_places(one, several->parameters_of(part, found))) {
+                return places;
+            }
         }
         return std::nullopt;
     }

@@ -109,12 +109,8 @@ bool has_terms(const Chain& robot, TermKind kind) {
 bool is_far_above_prior(const Doubted& doubted) {
     constexpr Index many = 30;  // a parameter
     const auto parameters = static_cast<Index>(doubted.estimate.names.size());
-    Index numbers = 0;
-    for (Index j = 0; j < doubted.measurements.is_seen.cols(); ++j) {
-        numbers +=
-            doubted.campaign.sensor->rows_of(j) * doubted.measurements.is_seen.col(j).count();
-    }
-    return numbers > many * parameters;
+    return seen_row_count(*doubted.campaign.sensor, doubted.measurements.is_seen) >
+           many * parameters;
 }
 
 std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,

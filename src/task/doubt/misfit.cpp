@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "calibrator/part_alone.hpp"
+#include "calibrator/residual_lengths.hpp"
 #include "camera_misfit.hpp"
 #include "core/format.hpp"
 #include "core/statistics.hpp"
@@ -48,26 +48,17 @@ bool are_orientations_off(const Campaign& campaign, const RowMatrixXd& residuals
 /// Of the instrument that tells most by itself, if it is in the unit of all.
 std::optional<Misfit> find_misfit_of_part(const Campaign& campaign, const Measurements& measured,
                                           const Parameters& registered) {
-    Campaign found = campaign;
-    found.nominal = registered;
-    const auto alone = detail::telling_part(campaign, measured);
+    const auto alone = detail::telling_part(campaign, measured, registered);
     const bool is_alike = &alone.campaign.sensor->main_units() == &campaign.sensor->main_units();
     if (alone.campaign.sensor->is_combined() || !is_alike) return std::nullopt;
-    return find_misfit(alone.campaign, alone.measured,
-                       detail::telling_part(found, measured).campaign.nominal);
+    return find_misfit(alone.campaign, alone.measured, alone.registered);
 }
 
 }  // namespace
 
 double detail::median_distance(const RowMatrixXd& residuals) {
-    std::vector<double> distances;
-    for (Index row = 0; row < residuals.rows(); ++row) {
-        const auto numbers = residuals.row(row).head(std::min<Index>(3, residuals.cols())).array();
-        if (numbers.isNaN().all()) continue;
-        distances.push_back(std::sqrt(numbers.isNaN().select(0, numbers).square().sum()));
-    }
-    const Eigen::Map<const VectorXd> all(distances.data(), std::ssize(distances));
-    return quantile(all, 0.5, QuantileRule::Upper);
+    const auto coordinates = residuals.leftCols(std::min<Index>(3, residuals.cols()));
+    return quantile(residual_lengths(coordinates), 0.5, QuantileRule::Upper);
 }
 
 std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& measured,

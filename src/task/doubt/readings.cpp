@@ -46,7 +46,7 @@ double credible_distance(const Campaign& campaign, const Measurements& measureme
 
 ReadingSearch search_readings(const Campaign& stated, const Measurements& all) {
     // Of several instruments one tells how joints are read, and many take long.
-    const detail::PartAlone telling = detail::telling_part(stated, all);
+    const detail::PartAlone telling = detail::telling_part(stated, all, stated.nominal);
     const Campaign& campaign = telling.campaign;
     const Measurements& measurements = telling.measured;
     ReadingSearch search;
