@@ -28,7 +28,8 @@ says which of them the cell does not allow), and measures with the sensor's nois
 error and repeatability that the campaign expects.
 In the column visible_targets that file may list which targets each configuration shows ("1 3"), as
 plan --csv writes it; the cells of the others stay empty. With sockets it has a column socket, and
-joints are those with which the ball sits in it. The file written starts with comment lines
+joints are those with which the ball sits in it. Joints are those that the campaign says its
+measurements have, the model's or the controller's. The file written starts with comment lines
 that hold the command, so it can be made again. Prints the true parameters as
 calibrate prints those it finds:
   parameter    value
@@ -70,8 +71,8 @@ void run_simulation(SimulateArguments arguments, const CommonOptions& common) {
     arguments.options.seed = arguments.seed.value_or(file.seed);
     const Simulation simulation = simulate_as_asked(arguments, file);
     warn_of_unchecked_bodies(file);
-    io::write_measurements_csv(arguments.out, file, simulation.measurements,
-                               make_comments(arguments, file));
+    io::write_measurements(arguments.out, file, simulation.measurements,
+                           make_comments(arguments, file));
     if (common.json) return print_document(io::to_json(simulation, file));
     print(fmt::format(
         "{}, {}: {}\n",

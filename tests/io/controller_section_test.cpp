@@ -97,9 +97,23 @@ TEST(ControllerSection, ReadsMeasurementsOfThePendant) {
     VectorXd q(6);
     q << -10, 20, 30, 40, 50, 60;
     EXPECT_LT((read.configurations.row(0).transpose() / degree - q).norm(), 1e-10);
-    EXPECT_NE(input_error_of([&] {
-                  read_measurements(path, parse_campaign(robot_text + controller, "a.yaml"));
-              }).find("A1"),
+    // They are written as they are read.
+    write_measurements(folder.path("back.csv"), file, read);
+    EXPECT_NE(detail::read_file(folder.path("back.csv")).find("config,sample,A1_rad,A2_rad,"),
+              std::string::npos);
+    const Measurements again = read_measurements(folder.path("back.csv"), file);
+    EXPECT_LT((again.configurations - read.configurations).cwiseAbs().maxCoeff(), 1e-12);
+    // Neither is taken for the other.
+    const CampaignFile plain = parse_campaign(robot_text + controller, "a.yaml");
+    EXPECT_NE(input_error_of([&] { read_measurements(path, plain); })
+                  .find("m.csv:1:8: column 'A1_deg' is a joint of the controller; state "
+                        "`measurements: {columns: controller}`"),
+              std::string::npos);
+    write_measurements(folder.path("model.csv"), plain, read);
+    EXPECT_NE(input_error_of([&] { read_measurements(folder.path("model.csv"), file); })
+                  .find("model.csv:1:15: column 'q1_rad' is a joint of the model, but "
+                        "`measurements: {columns: controller}` in the campaign says that joints "
+                        "are the controller's, which are called A1, A2,"),
               std::string::npos);
     EXPECT_NE(
         input_error_of([&] {
@@ -209,6 +223,22 @@ TEST(ControllerSection, NamesJointsThatACellLimits) {
                   parse_campaign(robot_text + home, "arm.yaml");
               }).find("is beyond joint_sums: J5 is 50 deg, must be from -30 to 40 deg"),
               std::string::npos);
+    // Never a joint of the other kind in place of one that is misspelt.
+    const auto refused = [&](const std::string& what, const std::string& where,
+                             const std::string& words) {
+        const std::string error = input_error_of([&] { limited(what); });
+        EXPECT_NE(error.find("arm.yaml:8:" + where + ": " + words), std::string::npos) << error;
+    };
+    refused("j3", "36", "'j3' is no joint of the robot or of its controller; did you mean 'J3'?");
+    refused("Q3", "36", "'Q3' is no joint of the robot or of its controller; did you mean 'q3'?");
+    refused("J9", "36", "'J9' is no joint of the robot or of its controller; must be J1, J2, ");
+    refused("q1 + J2", "41",
+            "'J2' is a joint of the controller; must stand alone, or the sum must be of the "
+            "robot's joints: q1, ");
+    refused("J3: {limits_mm: [1, 2]}, J4", "52",
+            "cell.joint_sums.J3.limits_mm is in 'mm', but 'J3' turns");
+    refused("J3: {limits_deg: [1, 2]}, J4", "53",
+            "cell.joint_sums.J3.limits_deg is not wider than twice cell.margin");
     // What is q3, the robot's or the controller's?
     EXPECT_NE(input_error_of([&] {
                   parse_campaign(robot_text +

@@ -124,6 +124,12 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
                             const Measurements& measurements,
                             const std::vector<std::string>& comment_lines = {});
 
+/// The same with the joints that read_measurements() takes: the controller's, where the campaign
+/// says so.
+void write_measurements(const std::string& path, const CampaignFile& file,
+                        const Measurements& measurements,
+                        const std::vector<std::string>& comment_lines = {});
+
 /// Writes CSV: config, the corrected joint values (degrees or mm, with enough digits to read them
 /// back exactly), residual_mm, residual_mrad, uncorrected_mm, uncorrected_mrad, and note
 /// (describe_shortfall()); also purpose, if `purposes` are stated. `ids`, `corrections` and stated

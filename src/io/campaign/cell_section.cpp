@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "campaign_sections.hpp"
@@ -203,6 +204,41 @@ void read_fixed(const YamlValue& value, const Chain& robot, Cell& cell) {
     }
 }
 
+/// Throws InputError for a word that names no joint of the robot, nor a unit behind a number: a
+/// slip in the name of a controller's joint, or a sum of these.
+void check_limited_words(const YamlEntry& entry, const std::vector<std::string>& model,
+                         const std::vector<std::string>& shown) {
+    const std::string_view key = entry.key;
+    for (std::size_t begin = 0; begin < key.size();) {
+        std::size_t end = begin;
+        while (end < key.size() && is_identifier('_' + std::string(1, key[end]))) ++end;
+        const std::string word(key.substr(begin, end - begin));
+        FileLocation place = entry.key_location;
+        place.column += static_cast<long>(begin);
+        begin = end + 1;
+        const auto is_in = [&](const auto& names) {
+            return std::ranges::find(names, word) != names.end();
+        };
+        if (!is_identifier(word) || is_in(model) || find_unit(word) != nullptr) continue;
+        if (is_in(shown)) {
+            throw input_error_at(place, quote(word) +
+                                            " is a joint of the controller; must stand alone, or "
+                                            "the sum must be of the robot's joints: " +
+                                            list_words(model));
+        }
+        std::vector<std::string> known = shown;
+        known.insert(known.end(), model.begin(), model.end());
+        const auto upper = [](unsigned char letter) { return std::toupper(letter); };
+        const auto alike = std::ranges::find_if(known, [&](const std::string& name) {
+            return std::ranges::equal(name, word, {}, upper, upper);
+        });
+        throw input_error_at(place,
+                             quote(word) + " is no joint of the robot or of its controller; " +
+                                 (alike != known.end() ? "did you mean " + quote(*alike) + "?"
+                                                       : "must be " + list_words(known)));
+    }
+}
+
 /// What a limit is of: a sum of the robot's joints, or a joint of the controller, which is one.
 Element parse_limited(const YamlEntry& entry, bool turns, const Chain& robot,
                       const ControllerJoints& controller) {
@@ -211,6 +247,7 @@ Element parse_limited(const YamlEntry& entry, bool turns, const Chain& robot,
     const auto found = std::find(shown.begin(), shown.end(), trim(entry.key));
     const Motion motion = turns ? Motion::Rotation : Motion::Translation;
     const bool is_same = controller.is_identity() && shown == names;
+    if (found == shown.end() && !is_same) check_limited_words(entry, names, shown);
     if (found == shown.end() || is_same) {
         return ElementParser(names).parse_joint_sum(entry.key, entry.key_location, motion);
     }
@@ -233,7 +270,7 @@ Element parse_limited(const YamlEntry& entry, bool turns, const Chain& robot,
 
 /// Of joints that all turn, in degrees or mm: "q3 - q2: {limits_deg: [-80, 90]}".
 JointSum read_joint_sum(const YamlEntry& entry, const Chain& robot,
-                        const ControllerJoints& controller) {
+                        const ControllerJoints& controller, const JointMargin& margin) {
     const YamlMap map(entry.value, keys::joint_sum);
     const YamlMeasure limits = map.require_measure("limits");
     const bool turns = limits.unit->quantity == Quantity::Angle;
@@ -244,13 +281,19 @@ JointSum read_joint_sum(const YamlEntry& entry, const Chain& robot,
         sum.coefficients[term.joint] = term.coefficient;
         if (robot.joint(term.joint).motion != parsed.motion) {
             throw limits.value.error(
-                fmt::format("is in '{}', but joint '{}' {}", limits.unit->name,
-                            robot.joints()[static_cast<std::size_t>(term.joint)].name,
+                fmt::format("is in '{}', but '{}' {}", limits.unit->name, entry.key,
                             turns ? "slides; must be in mm or m" : "turns; must be in deg or rad"));
         }
     }
     sum.limits.lower -= sum.offset;
     sum.limits.upper -= sum.offset;
+    const double kept = turns ? margin.angle : margin.length;
+    if (!(sum.limits.upper - sum.limits.lower > 2 * kept)) {
+        throw limits.value.error(
+            fmt::format("is not wider than twice cell.{}, which is kept from either end; must be, "
+                        "or the margin smaller",
+                        turns ? "margin" : "slide_margin"));
+    }
     return sum;
 }
 
@@ -366,7 +409,7 @@ Cell read_cell(const YamlValue& value, const Chain& robot, const Sensor& sensor,
     read_margin(map, robot, cell);
     if (const auto sums = map.find("joint_sums")) {
         for (const YamlEntry& entry : sums->entries()) {
-            cell.joint_sums.push_back(read_joint_sum(entry, robot, controller));
+            cell.joint_sums.push_back(read_joint_sum(entry, robot, controller, cell.limit_margin));
         }
     }
     if (const auto fixed = map.find("fixed")) read_fixed(*fixed, robot, cell);

@@ -3,10 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <optional>
+
 #include "calibration_data.hpp"
 #include "core/text.hpp"
 #include "foreign_tables.hpp"
 #include "io/format/atomic_file.hpp"
+#include "io/format/csv_reader.hpp"
+#include "io/format/units.hpp"
 #include "model/joint_limits.hpp"
 #include "planned_points.hpp"
 #include "points_list.hpp"
@@ -26,6 +31,42 @@ Configurations read_matlab(const std::string& path, const CampaignFile& file) {
             {}};
 }
 
+/// Throws InputError where a table has joints of the model in place of the controller's, or the
+/// other way round: their names are alike, their angles are not.
+void check_joint_columns(const detail::CsvReader& header, const CampaignFile& file) {
+    std::vector<std::string> model;
+    for (const Joint& joint : file.robot.joints()) model.push_back(joint.name);
+    const std::vector<std::string>& shown = file.controller.names();
+    const bool wants_shown = file.has_controller_columns;
+    const auto& wanted = wants_shown ? shown : model;
+    const auto& other = wants_shown ? model : shown;
+    const auto has = [](const std::vector<std::string>& names, std::string_view name) {
+        return std::ranges::find(names, name) != names.end();
+    };
+    std::size_t found = 0;
+    std::optional<std::size_t> wrong;
+    for (std::size_t field = 0; field < header.fields().size(); ++field) {
+        const std::string_view name = detail::split_unit(header.fields()[field]).stem;
+        if (has(wanted, name)) {
+            ++found;
+        } else if (!wrong && has(other, name)) {
+            wrong = field;
+        }
+    }
+    if (!wrong || found >= wanted.size()) return;
+    const std::string column = detail::quote(header.fields()[*wrong]);
+    throw input_error_at(
+        header.locate(*wrong),
+        wants_shown
+            ? fmt::format("column {} is a joint of the model, but `measurements: {{columns: "
+                          "controller}}` in the campaign says that joints are the controller's, "
+                          "which are called {}",
+                          column, detail::list_words(shown))
+            : fmt::format("column {} is a joint of the controller; state `measurements: "
+                          "{{columns: controller}}` in the campaign if joints are as it shows them",
+                          column));
+}
+
 /// `table`: the campaign whose joints a table has.
 MeasurementsFile read_as_stated(const std::string& path, const CampaignFile& file,
                                 const Campaign& table, const PointsSource& points) {
@@ -43,16 +84,28 @@ MeasurementsFile read_as_stated(const std::string& path, const CampaignFile& fil
     if (detail::is_points_list(path, content, joints, points.plan != nullptr)) {
         return detail::read_planned_points(path, std::move(content), file, points);
     }
+    detail::CsvReader header(path, content, detail::CsvStyle::Table);
+    if (header.next_row()) check_joint_columns(header, file);
     return detail::read_measurements_table(path, std::move(content), table);
 }
 
-/// The campaign with the controller's joints in place of the model's: their names, and limits as
-/// wide as those of the model allow.
-Campaign with_controller_joints(const CampaignFile& file) {
+/// The campaign with the joints that measurements have: where they are the controller's, these in
+/// place of the model's, with limits as wide as those of the model allow.
+Campaign with_measured_joints(const CampaignFile& file) {
     Campaign campaign = file;
+    if (!file.has_controller_columns) return campaign;
     campaign.robot =
         Chain(file.controller.limited(file.robot), file.robot.elements(), file.robot.torques());
     return campaign;
+}
+
+/// The joints of each configuration, rad or m, before what else it states.
+template <typename Convert>
+void replace_joints(Measurements& measurements, Index joints, const Convert& convert) {
+    for (auto configuration : measurements.configurations.rowwise()) {
+        const VectorXd before = configuration.head(joints).transpose();
+        configuration.head(joints) = convert(before).transpose();
+    }
 }
 
 }  // namespace
@@ -74,15 +127,22 @@ std::vector<std::string> describe_passed_over(const MeasurementsFile& measured) 
 
 MeasurementsFile read_measurements(const std::string& path, const CampaignFile& file,
                                    const PointsSource& points) {
-    if (!file.has_controller_columns) return read_as_stated(path, file, file, points);
-    MeasurementsFile read = read_as_stated(path, file, with_controller_joints(file), points);
-    if (read.is_joined) return read;  // with the plan's joints
-    const Index joints = file.robot.joint_count();
-    for (Index i = 0; i < read.configurations.rows(); ++i) {
-        const VectorXd c = read.configurations.row(i).head(joints).transpose();
-        read.configurations.row(i).head(joints) = file.controller.to_model(c).transpose();
-    }
+    MeasurementsFile read = read_as_stated(path, file, with_measured_joints(file), points);
+    if (!file.has_controller_columns || read.is_joined) return read;  // with the plan's joints
+    replace_joints(read, file.robot.joint_count(),
+                   [&](const VectorXd& c) { return file.controller.to_model(c); });
     return read;
+}
+
+void write_measurements(const std::string& path, const CampaignFile& file,
+                        const Measurements& measurements,
+                        const std::vector<std::string>& comment_lines) {
+    Measurements written = measurements;
+    if (file.has_controller_columns) {
+        replace_joints(written, file.robot.joint_count(),
+                       [&](const VectorXd& q) { return file.controller.to_controller(q); });
+    }
+    write_measurements_csv(path, with_measured_joints(file), written, comment_lines);
 }
 
 Configurations read_configurations(const std::string& path, const CampaignFile& file) {
