@@ -213,9 +213,24 @@ TEST(BadForeignTables, EachIsNamedInOneLine) {
                          "offset_mm: 300}], targets: {count: 1}}"),
            "m.csv: is a table of RoboDK, which is read where a sensor of kind points or poses "
            "measures [...]");
+    expect(replaced(robodk, "-11.181000", "-11.181000,1"), frames,
+           "m.csv:3:[...]: row has 19 fields; must have 18 as the first");
+    expect(replaced(robodk, "1297.812778,", ""), frames,
+           "m.csv:2:1: row has 17 fields behind a header with J1 to J6; a table of RoboDK must "
+           "have 12 (points) or 18 (poses)");
+    expect(robodk.substr(robodk.find('\n') + 1), frames,
+           "m.csv:1:1: 18 numbers without a header; a table of RoboDK must begin with one, [...]");
+    expect(replaced(robodk, "120.000000,-0.000000,0.000000,0.523599\n-30", "121,0,0,0\n-30"),
+           frames, "m.csv:3:[...]: has another tool in its last columns than 2, [...]");
+    std::string metres = robodk.substr(0, robodk.find('\n') + 1);
+    for (int k = 0; k < 4; ++k)
+        metres += fmt::format("{},9,8,7,6,5,1.2,0.5,0.1,0,0,0,0,0,0.1,0,0,0\n", k);
+    expect(metres, frames,
+           "m.csv: is a table of RoboDK with all it measured within 1.3 mm of the origin; is it "
+           "in m? Must be in mm");
     std::string straight = robodk.substr(0, robodk.find('\n') + 1);
     for (int k = 0; k < 4; ++k)
-        straight += fmt::format("{},0,0,0,0,0,1,2,{},0,0,0,1,2,3,0,0,0\n", 0.1 * k, k);
+        straight += fmt::format("{},0,0,0,0,0,1001,2,{},0,0,0,1,2,3,0,0,0\n", 0.1 * k, k);
     expect(straight, frames,
            "m.csv: its poses fit angles in [...] about as well as in [...]; must turn the "
            "tool more, or be a table with the column config");

@@ -49,6 +49,34 @@ bool may_be_robodk_header(const std::vector<std::string_view>& titles) {
     return true;
 }
 
+/// Whether six columns have the joints' names as RoboDK writes them, J1 to J6, which none of our
+/// tables has without units.
+bool has_robodk_joints(const std::vector<std::string_view>& titles) {
+    for (Index k = 0; k < robodk_joints; ++k) {
+        const auto field = static_cast<std::size_t>(k);
+        if (field >= titles.size() || titles[field] != fmt::format("J{}", k + 1)) return false;
+    }
+    return true;
+}
+
+/// Throws InputError for what was a table of RoboDK before columns or its header were lost.
+void check_robodk_columns(const CsvReader& csv, bool has_header, std::size_t count) {
+    const bool is_whole = count == robodk_poses || count == robodk_points;
+    if (has_header && !is_whole) {
+        throw input_error_at(csv.locate(0),
+                             fmt::format("row has {} fields behind a header with J1 to J6; a table "
+                                         "of RoboDK must have {} (points) or {} (poses)",
+                                         count, robodk_points, robodk_poses));
+    }
+    if (!has_header && is_whole) {
+        throw input_error_at(
+            csv.locate(0), fmt::format("{} numbers without a header; a table of RoboDK must begin "
+                                       "with one, J1,J2,J3,J4,J5,J6,X,Y,Z,..., and another table "
+                                       "with the column config",
+                                       count));
+    }
+}
+
 /// Orientations as columns may state them.
 struct AngleReading {
     double scale;  ///< to rad
@@ -70,13 +98,14 @@ Matrix3d rotation(const Vector3d& angles, const AngleReading& reading) {
     return (reading.is_xyz ? x * y * z : z * y * x).toRotationMatrix();
 }
 
-/// A row of the file in SI units, but for RoboDK's angles.
+/// A row of the file in SI units, but for angles of RoboDK's.
 struct Row {
     VectorXd joints;
     Vector3d position;
     Vector3d angles = Vector3d::Zero();
     Matrix3d orientation = Matrix3d::Identity();
     Vector3d tool = Vector3d::Zero();
+    Vector3d tool_angles = Vector3d::Zero();
     FileLocation place;
 };
 
@@ -132,10 +161,39 @@ class TableReader {
                 left_out_.push_back(std::to_string(number));
                 continue;
             }
+            check_tool(row);
             rows_.push_back(std::move(row));
             ids_.push_back(std::to_string(number));
         }
         if (rows_.empty()) throw error("is " + name() + " in which nothing was measured");
+        check_unit();
+    }
+
+    /// Of poses, which are of one tool.
+    void check_tool(const Row& row) const {
+        if (pose_ == nullptr || rows_.empty()) return;
+        constexpr double rounding = 1e-6;  // m or the file's unit of angles
+        const Row& first = rows_.front();
+        if ((row.tool - first.tool).norm() < rounding &&
+            (row.tool_angles - first.tool_angles).norm() < rounding) {
+            return;
+        }
+        throw input_error_at(row.place, "has another tool in its last columns than " +
+                                            std::to_string(first.place.line) +
+                                            ", the first line measured; must be one tool");
+    }
+
+    /// Throws InputError for positions in m: nothing is measured that near to where it is measured
+    /// from.
+    void check_unit() const {
+        constexpr double nearest = 20 * mm;
+        const double farthest = std::ranges::max(rows_, {}, [](const Row& row) {
+                                    return row.position.norm();
+                                }).position.norm();
+        if (farthest > nearest) return;
+        throw error(fmt::format(
+            "is {} with all it measured within {:.3g} mm of the origin; is it in m? Must be in mm",
+            name(), farthest / mm));
     }
 
     void check_width(std::size_t count) const {
@@ -186,6 +244,7 @@ class TableReader {
         const bool is_pose = csv_.fields().size() == robodk_poses;
         if (is_pose && pose_ != nullptr) row.angles = {number(9), number(10), number(11)};
         row.tool = vector(is_pose ? 12 : 9);
+        if (is_pose) row.tool_angles = {number(15), number(16), number(17)};
         row.place = csv_.locate(0);
         return row;
     }
@@ -363,27 +422,37 @@ class TableReader {
 }  // namespace
 
 ForeignTable foreign_table(const std::string& path, const std::string& content,
-                           const Campaign& campaign) try {
+                           const Campaign& campaign) {
     // Enough for two rows; what has longer lines is none.
     constexpr std::size_t enough = 1 << 16;
     std::string head = content.substr(0, enough);
     if (head.size() < content.size()) head.erase(head.rfind('\n') + 1);
     CsvReader csv(path, std::move(head), CsvStyle::Table);
-    if (!csv.next_row()) return ForeignTable::None;
-    const auto joints = static_cast<std::size_t>(campaign.robot.joint_count());
+    const auto next_row = [&] {
+        try {
+            return csv.next_row();
+        } catch (const InputError&) {
+            return false;  // no table of this form; who reads it says what is wrong
+        }
+    };
+    if (!next_row()) return ForeignTable::None;
+    const Index joints = campaign.robot.joint_count();
+    const bool may_be_robodk = joints == robodk_joints;
     if (std::ranges::all_of(csv.fields(), is_number)) {
-        return csv.fields().size() == joints + matrix_size ? ForeignTable::Pybotics
-                                                           : ForeignTable::None;
+        const std::size_t count = csv.fields().size();
+        if (count == static_cast<std::size_t>(joints) + matrix_size) return ForeignTable::Pybotics;
+        if (may_be_robodk) check_robodk_columns(csv, false, count);
+        return ForeignTable::None;
     }
-    if (joints != robodk_joints || !may_be_robodk_header(csv.fields()) || !csv.next_row()) {
+    const bool is_named = has_robodk_joints(csv.fields());
+    if (!may_be_robodk || !may_be_robodk_header(csv.fields()) || !next_row() ||
+        !std::ranges::all_of(csv.fields(), is_number)) {
         return ForeignTable::None;
     }
     const std::size_t count = csv.fields().size();
-    const bool is_robodk = (count == robodk_poses || count == robodk_points) &&
-                           std::ranges::all_of(csv.fields(), is_number);
-    return is_robodk ? ForeignTable::RoboDk : ForeignTable::None;
-} catch (const InputError&) {
-    return ForeignTable::None;  // no table of this form; who reads it says what is wrong
+    if (is_named) check_robodk_columns(csv, true, count);
+    return count == robodk_poses || count == robodk_points ? ForeignTable::RoboDk
+                                                           : ForeignTable::None;
 }
 
 io::MeasurementsFile read_foreign_table(const std::string& path, std::string content,

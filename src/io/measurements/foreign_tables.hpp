@@ -18,7 +18,7 @@ enum class ForeignTable {
     Pybotics,
 };
 
-/// By the first rows.
+/// By the first rows. Throws InputError for what would be RoboDK's but for its header or columns.
 ForeignTable foreign_table(const std::string& path, const std::string& content,
                            const Campaign& campaign);
 
