@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/decompositions.hpp"
 #include "posewise/core/errors.hpp"
@@ -28,15 +29,27 @@ constexpr double negligible = 1e-26;
 /// A pose with a weighted error below this is reached, m: nothing holds it, nor is it singular.
 constexpr double attained = 1e-6;
 
+/// Weight of a joint sum that is kept at its limit, m per rad or m: of a step's equations these are
+/// exact to rounding, and a sum is beyond by this much at most.
+constexpr double sum_weight = 1e4;
+constexpr double sum_rounding = 1e-9;
+
 /// Rotation vector of what R lacks to be the wanted rotation, in the frame both are in.
 Vector3d missing_rotation(const Matrix3d& wanted, const Matrix3d& R) {
     return vector_from_rotation(wanted * R.transpose());
 }
 
-/// min |J d - r|^2, rows: position and weighted angle that are missing, change of each joint.
+/// min |J d - r|^2, rows: position and weighted angle that are missing, change of each joint, what
+/// each sum that is held lacks to its limit.
 struct Equations {
     MatrixXd J;
     VectorXd r;
+};
+
+/// A joint sum that is kept at one of its limits.
+struct HeldSum {
+    const JointSum* sum = nullptr;
+    double limit = 0;  ///< rad or m
 };
 
 class Search {
@@ -71,7 +84,34 @@ class Search {
     }
 
   private:
+    /// Each sum that the joints found would be beyond is held at its limit, until none is.
     Correction solve() {
+        held_sums_.clear();
+        for (;;) {
+            const Correction correction = solve_with_held_sums();
+            const auto beyond = find_sum_beyond(correction.joints);
+            if (!beyond) return correction;
+            held_sums_.push_back(*beyond);
+        }
+    }
+
+    /// The first that is not held yet; its limit is where the nominal joints are if these are
+    /// beyond already.
+    std::optional<HeldSum> find_sum_beyond(const VectorXd& q) const {
+        for (const JointSum& sum : options_.joint_sums) {
+            if (std::ranges::find(held_sums_, &sum, &HeldSum::sum) != held_sums_.end()) continue;
+            const auto amount_at = [&](const VectorXd& joints) {
+                return sum.coefficients.dot(joints.head(sum.coefficients.size()));
+            };
+            const double lower = std::min(sum.limits.lower, amount_at(nominal_));
+            const double upper = std::max(sum.limits.upper, amount_at(nominal_));
+            if (amount_at(q) < lower - sum_rounding) return HeldSum{&sum, lower};
+            if (amount_at(q) > upper + sum_rounding) return HeldSum{&sum, upper};
+        }
+        return std::nullopt;
+    }
+
+    Correction solve_with_held_sums() {
         Correction correction;
         correction.joints = nominal_.cwiseMax(lower_).cwiseMin(upper_);
         correction.uncorrected = error_at(nominal_);
@@ -100,13 +140,17 @@ class Search {
     }
 
     bool is_singular(const Correction& correction) const {
-        if (!correction.held_by_limit.empty() || !correction.held_by_change.empty()) return false;
+        if (!correction.held_by_limit.empty() || !correction.held_by_change.empty() ||
+            !correction.held_by_sum.empty()) {
+            return false;
+        }
         return robot_.joint_count() >= (options_.length_per_angle > 0 ? 6 : 3);
     }
 
     void find_held(Correction& correction) {
         const Equations system = equations(correction.joints);
         const std::vector<Index> free = free_joints(correction.joints, system);
+        for (const HeldSum& held : held_sums_) correction.held_by_sum.push_back(held.sum->name);
         for (Index j = 0; j < robot_.joint_count(); ++j) {
             if (std::find(free.begin(), free.end(), j) != free.end()) continue;
             const double q = correction.joints[j];
@@ -131,16 +175,24 @@ class Search {
         const Isometry3d& flange = motion_.world_from_flange;
         const Vector3d tool = flange * options_.tool;
         const double weight = options_.length_per_angle;
-        Equations system{MatrixXd::Zero(6 + count, count), VectorXd(6 + count)};
+        const auto sums = std::ssize(held_sums_);
+        const Index rows = 6 + count + sums;
+        Equations system{MatrixXd::Zero(rows, count), VectorXd::Zero(rows)};
         for (Index j = 0; j < robot_.joint_count(); ++j) {
             const Twist twist = motion_.joint_twists.col(j);
             system.J.block<3, 1>(0, j) = velocity_of(tool, twist);
             system.J.block<3, 1>(3, j) = weight * twist.head<3>();
         }
-        system.J.bottomRows(count).diagonal().setConstant(change_weight_);
-        system.r << wanted_ * options_.tool - tool,
+        system.J.middleRows(6, count).diagonal().setConstant(change_weight_);
+        system.r.head(6 + count) << wanted_ * options_.tool - tool,
             weight * missing_rotation(wanted_.linear(), flange.linear()),
             change_weight_ * (nominal_ - q);
+        for (Index k = 0; k < sums; ++k) {
+            const auto& [sum, limit] = held_sums_[static_cast<std::size_t>(k)];
+            const Index joints = sum->coefficients.size();
+            system.J.row(6 + count + k).head(joints) = sum_weight * sum->coefficients.transpose();
+            system.r[6 + count + k] = sum_weight * (limit - sum->coefficients.dot(q.head(joints)));
+        }
         return system;
     }
 
@@ -192,6 +244,7 @@ class Search {
     VectorXd upper_;
     FlangeMotion motion_;
     double change_weight_ = change_weight;
+    std::vector<HeldSum> held_sums_;
 };
 
 void check_options(const CorrectionOptions& options) {
@@ -241,6 +294,7 @@ std::string describe_shortfall(const Chain& robot, const Correction& correction)
         }
     };
     add_joints(correction.held_by_limit, " at its limit");
+    for (const std::string& sum : correction.held_by_sum) add(sum + " at its limit");
     add_joints(correction.held_by_change, " at the largest change");
     if (correction.is_singular) add("singular");
     if (correction.ending == Ending::IterationLimit) add("not converged");

@@ -207,6 +207,48 @@ TEST(Correction, OfARedundantRobotIsCompleteBesideAJointAtItsLimit) {
     EXPECT_GT(reached_at_a_limit, 0);
 }
 
+/// A sum of joints that the correction would exceed ends at its limit, and what is left is the
+/// least that is possible there: no direction along the limit makes it smaller.
+TEST(Correction, KeepsToLimitsOfJointSums) {
+    const Calibrated cell = known(testing::fanuc());
+    const RowMatrixXd configurations = random_configurations(cell.campaign.robot, 50, 17);
+    int held = 0;
+    for (Index i = 0; i < configurations.rows(); ++i) {
+        const VectorXd nominal = configurations.row(i).transpose();
+        const VectorXd free = correct(cell, nominal).joints;
+        VectorXd coefficients = VectorXd::Zero(6);
+        coefficients[1] = -1;
+        coefficients[2] = 1;
+        const double from = coefficients.dot(nominal);
+        const double to = coefficients.dot(free);
+        const double limit = from + 0.5 * (to - from);
+        const Interval limits = to > from ? Interval{-10, limit} : Interval{limit, 10};
+        const CorrectionOptions options{.joint_sums = {{"q3 - q2", coefficients, limits}}};
+        const Correction found = correct(cell, nominal, options);
+        EXPECT_NEAR(coefficients.dot(found.joints), limit, 1e-8);
+        if (found.held_by_sum.empty()) continue;  // it reaches the pose otherwise, or is singular
+        ++held;
+        EXPECT_EQ(found.held_by_sum.front(), "q3 - q2");
+        EXPECT_NE(describe_shortfall(cell.campaign.robot, found).find("q3 - q2 at its limit"),
+                  std::string::npos);
+        const auto size = [](const PoseError& error) {
+            return std::hypot(error.position, error.orientation);
+        };
+        const double left = size(found.residual);
+        EXPECT_LT(left, size(found.uncorrected));
+        if (is_held(found)) continue;
+        for (Index j = 0; j < 6; ++j) {
+            for (const double step : {-1e-5, 1e-5}) {
+                VectorXd moved = found.joints;
+                moved[j] += step;
+                if (j == 1 || j == 2) moved[3 - j] += step;
+                EXPECT_GT(size(real_error(cell, moved, nominal)), left - 1e-8) << j;
+            }
+        }
+    }
+    EXPECT_GT(held, 40);
+}
+
 /// With the wrist stretched no joint turns the flange about one axis: what lacks stays, no joint
 /// runs away, and the correction says so.
 TEST(Correction, AtASingularPoseStaysNear) {

@@ -6,6 +6,7 @@
 
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/core/types.hpp"
+#include "posewise/model/cell.hpp"
 #include "posewise/model/chain.hpp"
 
 namespace posewise {
@@ -21,6 +22,8 @@ struct CorrectionOptions {
     double largest_turn = 0.1;   ///< for a revolute joint (rad)
     double largest_slide = 0.1;  ///< for a prismatic joint (m)
     Index iteration_limit = 100;
+    /// Sums of joints that a correction carries no further beyond their limits.
+    std::vector<JointSum> joint_sums = {};
 };
 
 /// How far a pose is from where it should be.
@@ -32,11 +35,12 @@ struct PoseError {
 /// Joint values that bring the real robot where the nominal one would be.
 struct Correction {
     Ending ending = Ending::NotRun;
-    VectorXd joints;                    ///< the configuration; measured torques unchanged
-    PoseError uncorrected;              ///< real robot at the nominal joint values
-    PoseError residual;                 ///< real robot at the corrected ones
-    std::vector<Index> held_by_limit;   ///< joints whose limit prevents further correction
-    std::vector<Index> held_by_change;  ///< joints whose largest turn or slide does
+    VectorXd joints;                       ///< the configuration; measured torques unchanged
+    PoseError uncorrected;                 ///< real robot at the nominal joint values
+    PoseError residual;                    ///< real robot at the corrected ones
+    std::vector<Index> held_by_limit;      ///< joints whose limit prevents further correction
+    std::vector<Index> held_by_change;     ///< joints whose largest turn or slide does
+    std::vector<std::string> held_by_sum;  ///< names of joint sums whose limit does
     /// Whether an error is left although the robot has enough joints (six; three if only the
     /// position counts) and none is held: near a singular pose, or out of reach.
     bool is_singular = false;
@@ -44,10 +48,11 @@ struct Correction {
 
 /// Corrects the joint values of a nominal configuration so that the flange of the robot with error
 /// parameters `parameters` is at `base_from_flange`. Uses Levenberg-Marquardt [Marquardt 1963] with
-/// the analytic twists, within the joint limits. Minimises the squares of position error and
-/// weighted angle; among equally good joint values it takes the smallest change. A robot with fewer
-/// than six joints, or with a held joint, comes as near as it can. Throws InputError if the nominal
-/// configuration is not within the joint limits, or for options out of range.
+/// the analytic twists, within the joint limits and those of joint sums. Minimises the squares of
+/// position error and weighted angle; among equally good joint values it takes the smallest change.
+/// A robot with fewer than six joints, or with a held joint or sum, comes as near as it can. Throws
+/// InputError if the nominal configuration is not within the joint limits, or for options out of
+/// range.
 Correction correct_configuration(const Chain& robot, const VectorXd& parameters,
                                  const VectorXd& nominal, const Isometry3d& base_from_flange,
                                  const CorrectionOptions& options = {});

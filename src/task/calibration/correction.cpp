@@ -31,7 +31,7 @@ bool is_home(const Chain& robot, const Correction& correction, const CorrectionO
 }
 
 /// What of the program collides in the campaign's cell, the targets taken off, or is beyond its
-/// joint sums.
+/// joint sums already.
 CellViolations find_collisions(const Campaign& campaign, const RowMatrixXd& configurations) {
     Campaign working = campaign;
     working.has_nominal_targets = false;
@@ -61,7 +61,9 @@ std::string describe_collisions(const Campaign& campaign, const CorrectedPoses& 
 
 CorrectedPoses correct_poses(const Campaign& campaign, const Parameters& found,
                              const RowMatrixXd& configurations, const std::vector<std::string>& ids,
-                             CorrectionBase base, const CorrectionOptions& options) {
+                             CorrectionBase base, const CorrectionOptions& stated) {
+    CorrectionOptions options = stated;
+    options.joint_sums = campaign.cell.joint_sums;
     const Isometry3d from_base = estimated_base_from_base(campaign, found, base);
     const VectorXd no_errors = VectorXd::Zero(campaign.robot.parameter_count());
     CorrectedPoses corrected{campaign.robot, ids, configurations, {}, {}, {}};
