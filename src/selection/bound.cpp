@@ -22,6 +22,13 @@ MatrixXd held_information(const Blocks& candidates, const SelectOptions& options
     return information_of(options.held_rows, candidates.parameter_count());
 }
 
+void check_takes_nuisance(Criterion criterion) {
+    if (!needs_test_poses(criterion) && has_information_function(criterion)) return;
+    throw InputError("criterion " + std::string(criterion_name(criterion)) +
+                     " cannot leave columns out of account (`focus`, nuisance columns); "
+                     "must be d, a, e, o1, o3 or o5");
+}
+
 Objective make_objective(const Blocks& candidates, const SelectOptions& options) {
     const Blocks* test_poses = options.test_poses != nullptr ? options.test_poses : &candidates;
     Objective objective =
@@ -39,11 +46,7 @@ Objective make_objective(const Blocks& candidates, const SelectOptions& options)
         throw InputError("all " + std::to_string(L) +
                          " columns are nuisance, at least one must be of interest");
     }
-    if (objective.test_poses != nullptr || !has_information_function(options.criterion)) {
-        throw InputError("criterion " + std::string(criterion_name(options.criterion)) +
-                         " cannot leave columns out of account (`focus`, nuisance columns); "
-                         "must be d, a, e, o1, o3 or o5");
-    }
+    check_takes_nuisance(options.criterion);
     objective.nuisance = options.nuisance;
     return objective;
 }

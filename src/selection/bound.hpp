@@ -5,6 +5,9 @@
 
 namespace posewise::detail {
 
+/// Throws InputError for a criterion that cannot leave columns out of account: G, V, O2 and O4.
+void check_takes_nuisance(Criterion criterion);
+
 /// The objective that `options` ask for. Throws InputError for nuisance columns that do not exist,
 /// are not ascending, are all columns, or come with G or V.
 Objective make_objective(const Blocks& candidates, const SelectOptions& options);

@@ -2,7 +2,8 @@
 `motoman_camera` (ctu-vras/multirobot-calibration), calibrated by the corners that one or two fixed
 cameras see of it, with views chosen by V and at random, and judged at the reflector's 146 places
 with base and reflector fitted anew. Beside what is found stands what was expected of the robot
-between the joint values of these places, of which the campaign makes its limits.
+between the joint values of these places, of which the campaign makes its limits. V, too, looks at
+poses between them: most views are elsewhere.
 
 POSEWISE_REAL_DATA=FOLDER python3 tests/benchmark/motoman_camera.py PROGRAM [counts [seconds]]
 """
@@ -89,6 +90,18 @@ def write_tables(folder, count):
     return list(dict.fromkeys(ids))
 
 
+def write_test_poses(folder, count=200):
+    """Random configurations within the campaign's limits, which V is to predict."""
+    with open(os.path.join(folder, "pixels.yaml"), encoding="utf-8") as file:
+        joints = yaml.safe_load(file)["robot"]["joints"]
+    draw = random.Random(0)
+    with open(os.path.join(folder, "tests.csv"), "w", encoding="utf-8") as out:
+        out.write("config," + ",".join(f"{name}_deg" for name in joints) + "\n")
+        for k in range(count):
+            q = [draw.uniform(*joint["limits_deg"]) for joint in joints.values()]
+            out.write(f"t{k}," + ",".join(map(repr, q)) + "\n")
+
+
 def write_views(folder, name, ids):
     wanted = set(ids)
     with open(os.path.join(folder, "pixels.csv"), encoding="utf-8") as rows, \
@@ -119,7 +132,7 @@ def judge(program, folder, table):
 
 def choose(program, folder, count, seconds):
     done = run(program, folder, "select", "pixels.yaml", "-m", "pixels.csv", "-k", str(count),
-               "--criterion", "v", "--effort", "quick", "--time", str(seconds), "-o", "plan.json")
+               "--criterion", "v", "--test-poses", "tests.csv", "--effort", "quick", "--time", str(seconds), "-o", "plan.json")
     if not os.path.exists(os.path.join(folder, "plan.json")):
         raise SystemExit(done.stderr)
     with open(os.path.join(folder, "plan.json"), encoding="utf-8") as file:
@@ -137,6 +150,7 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             write_campaigns(folder, cameras, number)
             ids = write_tables(folder, number)
+            write_test_poses(folder)
             for count in counts:
                 write_views(folder, "some.csv", choose(program, folder, count, seconds))
                 print(f"{number:7}{count:6} by V       {judge(program, folder, 'some.csv')}", flush=True)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "../../src/model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/constraints.hpp"
@@ -14,6 +15,8 @@
 #include "support/campaigns.hpp"
 #include "support/cells.hpp"
 #include "support/designs.hpp"
+#include "support/robots.hpp"
+#include "support/sensors.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace posewise {
@@ -212,6 +215,42 @@ TEST_F(ChooseWithRobot, SaysWhatItChoseAndWhatItRestsOn) {
     }
     EXPECT_EQ(plan.assumptions.front().name, "sigma_m");
     EXPECT_EQ(plan.assumptions.front().value, 5e-5);
+}
+
+/// Behind a camera's image nothing is read, so nothing is predicted there.
+TEST(ChooseViews, PredictsAtTestPosesWhatIsInView) {
+    const Campaign campaign = testing::before_camera(testing::tracked_campaign(testing::fanuc()),
+                                                     testing::fixed_camera());
+    const Measurements seen =
+        simulate(campaign, {.pose_count = 20, .repeats = 1, .truth_seed = 2, .seed = 7})
+            .measurements;
+    RowMatrixXd anywhere = detail::random_configurations(campaign.robot, 20, 3);
+    ChoiceOptions options;
+    options.criterion = Criterion::V;
+    options.pose_count = 8;
+    options.sources.test_poses = "tests.csv";
+    options.test_poses = seen.configurations.topRows(5);
+    const Plan plan = choose(campaign, measured_candidates(seen), options);
+    EXPECT_TRUE(plan.cell_doubts.empty());
+    VectorXd clearances(campaign.sensor->target_count());
+    std::vector<Index> hidden;
+    for (Index i = 0; i < anywhere.rows(); ++i) {
+        campaign.sensor->view_clearances(
+            world_from_flange(campaign, campaign.nominal, anywhere.row(i).transpose()),
+            campaign.nominal.sensor, clearances);
+        if (clearances.maxCoeff() < 0) hidden.push_back(i);
+    }
+    ASSERT_GE(hidden.size(), 2U);
+    RowMatrixXd tests(7, campaign.robot.joint_count());
+    tests << seen.configurations.topRows(5), anywhere.row(hidden[0]), anywhere.row(hidden[1]);
+    options.test_poses = tests;
+    const Plan same = choose(campaign, measured_candidates(seen), options);
+    EXPECT_EQ(same.value, plan.value);
+    EXPECT_EQ(same.cell_doubts,
+              std::vector<std::string>{
+                  "2 of 7 test poses show too little of what the sensor sees: left out"});
+    options.test_poses = tests.bottomRows(2);
+    EXPECT_THROW(choose(campaign, measured_candidates(seen), options), InputError);
 }
 
 TEST_F(ChooseWithRobot, SaysWhatTheValueOfVMeansInMetresWhereThatIsExact) {

@@ -12,12 +12,14 @@
 #include "core/decompositions.hpp"
 #include "core/format.hpp"
 #include "core/text.hpp"
+#include "measurement/contact.hpp"
 #include "measurement/noise.hpp"
 #include "measurement/prior_rows.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/planner/planning.hpp"
+#include "selection/bound.hpp"
 #include "task/calibration/calibration_options.hpp"
 #include "task/calibration/inputs.hpp"
 
@@ -237,6 +239,38 @@ void state_limits(ChoiceProblem& problem, const std::vector<Index>& groups) {
     });
 }
 
+/// The test poses with the targets that they show: all, or of a sensor with a view those in it.
+/// Poses that show too little are left out and noted. Throws InputError if none is left.
+ShownPoses shown_tests(ChoiceProblem& problem, const Campaign& campaign,
+                       const ChoiceOptions& options) {
+    const Sensor& sensor = *campaign.sensor;
+    const Index count = options.test_poses.rows();
+    ShownPoses tests{options.test_poses, all_seen(count, sensor.target_count())};
+    if (!sensor.has_view() || count == 0) return tests;
+    VectorXd clearances(sensor.target_count());
+    Index kept = 0;
+    for (Index i = 0; i < count; ++i) {
+        const VectorXd q = options.test_poses.row(i).transpose();
+        sensor.view_clearances(world_from_flange(campaign, problem.parameters, q),
+                               problem.parameters.sensor, clearances);
+        const SeenTargets in_view = (clearances.array() >= 0).transpose();
+        if (needed_clearance(clearances, sensor.least_in_view()) < 0) continue;
+        tests.configurations.row(kept) = q.transpose();
+        tests.is_seen.row(kept++) = in_view;
+    }
+    if (kept == count) return tests;
+    const std::string& name = options.sources.test_poses;
+    if (kept == 0) {
+        throw InputError(name + ": no test pose shows what the sensor sees; one must");
+    }
+    tests.configurations.conservativeResize(kept, Eigen::NoChange);
+    tests.is_seen.conservativeResize(kept, Eigen::NoChange);
+    problem.cell_doubts.push_back(
+        fmt::format("{} of {} test poses show too little of what the sensor sees: left out",
+                    count - kept, count));
+    return tests;
+}
+
 void check_test_poses(const ChoiceOptions& options, Criterion criterion) {
     const bool has_any = options.test_poses.rows() > 0 || options.test_blocks.count() > 0;
     if (!has_any || needs_test_poses(criterion)) return;
@@ -339,6 +373,7 @@ ChoiceProblem state_choice(const Campaign& campaign, Candidates candidates,
             *request.seed, *candidates.seed));
     }
     check_test_poses(options, request.criterion);
+    if (request.focus != Focus::All) check_takes_nuisance(request.criterion);
     problem.kind = candidates.kind;
     problem.ids = std::move(candidates.ids);
     problem.configurations = std::move(candidates.configurations);
@@ -371,13 +406,15 @@ ChoiceProblem state_choice(const Campaign& campaign, Candidates candidates,
         problem.options.positions = turning_joints(campaign.robot, problem.configurations);
     }
     const bool has_tests = options.test_poses.rows() > 0;
+    const ShownPoses tests = shown_tests(problem, campaign, options);
+    const RowMatrixXd once = tests.is_seen.cast<double>();
     if (common_part(campaign) > 0 && needs_test_poses(request.criterion)) {
-        const RowMatrixXd once = RowMatrixXd::Ones(options.test_poses.rows(), problem.share.cols());
-        state_test_poses(problem, campaign, has_tests ? options.test_poses : problem.configurations,
+        state_test_poses(problem, campaign,
+                         has_tests ? tests.configurations : problem.configurations,
                          request.repeats * (has_tests ? once : problem.share));
     } else if (has_tests) {
-        problem.test_poses = std::make_unique<Blocks>(
-            make_blocks(campaign, parameters, options.test_poses, request.repeats));
+        problem.test_poses = std::make_unique<Blocks>(make_blocks(
+            campaign, parameters, tests.configurations, RowMatrixXd(request.repeats * once)));
     }
     state_limits(problem, options.groups);
     return problem;
