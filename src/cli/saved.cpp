@@ -42,10 +42,10 @@ bool try_to_show(const std::string& path, const char* what, const std::function<
     }
 }
 
-/// As it was typed where the estimate was made, or beside it.
+/// A file that an estimate names as it was typed: seen from the estimate's folder, so that a file
+/// of the same name where the program runs is not taken for it; else from here.
 std::string find_file(const std::string& typed, const std::string& estimate) {
     std::error_code ignored;
-    if (fs::exists(typed, ignored)) return typed;
     const fs::path beside = fs::path(estimate).parent_path() / typed;
     return fs::exists(beside, ignored) ? beside.string() : typed;
 }

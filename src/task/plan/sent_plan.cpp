@@ -118,7 +118,12 @@ VectorXd send(const Grid& grid, const std::string& what, const VectorXd& q,
     const std::string fault = find(nearest);
     if (fault.empty()) return nearest;
     const std::string planned = find(q);
-    if (!planned.empty()) throw InputError(fmt::format("{} {}", what, planned));
+    if (!planned.empty()) {
+        throw InputError(fmt::format(
+            "{} {} as it was planned; has the campaign changed since? Must be planned again with "
+            "it, or sent with the campaign as it was",
+            what, planned));
+    }
     const auto other = grid.nearest_of(q, [&](const VectorXd& one) { return find(one).empty(); });
     if (other) return *other;
     throw InputError(fmt::format(
