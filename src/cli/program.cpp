@@ -316,12 +316,17 @@ std::string describe(const io::ProgramContent& content, const ControllerJoints& 
                                     detail::format_short(units.to_reading(pose.change), 4),
                                     units.reading, controller.count() > 1 ? " at most" : ""));
     }
+    std::vector<std::string> again;
+    for (const auto& [id, pose] : content.again) {
+        again.push_back(fmt::format("{} (at {})", id, pose));
+    }
     std::vector<std::string> visits;
     for (const auto& [id, count] : content.other_visits) {
         visits.push_back(fmt::format("{} ({})", id, times_text(count)));
     }
     return describe("dropped", content.dropped) + describe("moved", moved) +
            describe("not of the plan", content.added) +
+           describe("poses of the plan under another name", again) +
            describe("without a name, known by their joints", content.recognised) +
            describe("without a name, measured at no pose of the plan", content.unnamed) +
            describe("not visited " + times_text(content.visits) + " as the others", visits);

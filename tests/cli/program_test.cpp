@@ -161,7 +161,8 @@ TEST_F(ProgramCommand, VisitsAReferencePoseAgain) {
     }
     EXPECT_GE(visits, 2);
     EXPECT_NE(text.find(std::to_string(12 + visits) + " poses in "), std::string::npos) << text;
-    EXPECT_NE(run_well("program p.json --for csv --read a.csv").find("not of the plan: ref1"),
+    EXPECT_NE(run_well("program p.json --for csv --read a.csv")
+                  .find("poses of the plan under another name: ref1 (at p1), "),
               std::string::npos);
     const std::string read =
         run_well("program p.json --for csv --read a.csv --reference p1 --every 4");

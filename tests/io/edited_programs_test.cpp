@@ -121,6 +121,18 @@ TEST(EditedPrograms, AreRefusedWhereTheyAreSpoilt) {
                    "lines were lost or added");
     expect_refused(Edited(ProgramFormat::Yaskawa).replace("VJ=20.00", "VJ=0.00"),
                    "must be above 0");
+    expect_refused(Edited(ProgramFormat::Yaskawa).replace("VJ=20.00", "VJ=120.00"),
+                   "has 'VJ=120.00'; must be above 0 and at most 100 per cent");
+    expect_refused(Edited(ProgramFormat::Yaskawa).replace("T=2.00", "T=-2.00"),
+                   "must not be below 0");
+    expect_refused(Edited(ProgramFormat::Staubli).replace("vel=\"20\"", "vel=\"0\"", "/cell.dtx"),
+                   "has 'vel=\"0\"'; must be above 0");
+    expect_refused(Edited(ProgramFormat::Staubli).replace("delay(2.0)", "delay(-2)", "/start.pgx"),
+                   "must not be below 0");
+    expect_refused(Edited(ProgramFormat::Ros2).replace("dwell_s: 2.0", "dwell_s: -2"),
+                   "is below 0");
+    expect_refused(Edited(ProgramFormat::Ros2).replace("{sec: ", "{sec: -"), "is below 0");
+    expect_refused(Edited(ProgramFormat::Csv).replace(",2.0\n", ",-2.0\n"), "must not be below 0");
     expect_refused(Edited(ProgramFormat::Ros2).replace("named_states:", "states:"), "named_states");
     const Edited cut(ProgramFormat::Ros2);
     const std::string whole = detail::read_file(cut.path());
@@ -165,7 +177,21 @@ TEST(EditedPrograms, HaveNoSpoiltTargetThatIsPassedOver) {
              {Kuka, "PTP {A1", "PTP {A1 x,A1", "is not a number", 10},
              {Fanuc, "J P[2]", "J P[99]", "moves to P[99], which is not under /POS"},
              {Fanuc, "P[2]{", "P[3]{", "states a position twice"},
-             {Fanuc, "20%", "-20%", "has '-20%'; must not be below 0"},
+             {Fanuc, "20%", "-20%", "has '-20%'; must be above 0 and at most 100 per cent"},
+             {Fanuc, "20%", "400%", "has '400%'; must be above 0 and at most 100 per cent"},
+             {Fanuc, "20%", "0%", "must be above 0 and at most 100 per cent"},
+             {Fanuc, "20%", "-2sec", "has '-2sec'; must be above 0"},
+             {Fanuc, "WAIT   2.00(sec)", "WAIT  -3.00(sec)",
+              "has '-3.00(sec)'; must not be below 0"},
+             {Kuka, "#VEL_PTP,20", "#VEL_PTP,900", "must be above 0 and at most 100 per cent"},
+             {Kuka, "#VEL_PTP,20", "#VEL_PTP,-20", "must be above 0 and at most 100 per cent"},
+             {Kuka, "WAIT SEC 2.0", "WAIT SEC -1", "has 'WAIT SEC -1'; must not be below 0"},
+             {Ur, "v=0.4189", "v=0", "has 'v=0'; must be above 0"},
+             {Ur, "a=0.5, v=0.4189", "0, 0.4189", "has '0'; must be above 0"},
+             {Ur, "sleep(2.0)", "sleep(-1)", "has 'sleep(-1)'; must not be below 0"},
+             {Abb, "slow:=[200,", "slow:=[0,", "must be above 0"},
+             {Abb, "slow:=[200,100", "slow:=[200,-1", "must be above 0"},
+             {Abb, "\\InPos,2.0", "\\InPos,-2.0", "must not be below 0"},
              {Fanuc, "J6=", "J5=", "has J5 where J6 must be", -1},
              {Fanuc, "J2=", "J1=", "has J1 where J2 must be", -1}}) {
         Edited edited(format);
@@ -212,10 +238,13 @@ TEST(EditedPrograms, NameWhatIsMissingMovedAndNew) {
     edited.replace("\np1,", "\nnew,").replace("\nv1,", "\nv1,1");
     const ProgramContent other = content();
     EXPECT_EQ(other.dropped, std::vector<std::string>{"p1"});
-    EXPECT_EQ(other.added, std::vector<std::string>{"new"});
+    EXPECT_TRUE(other.added.empty());
+    EXPECT_EQ(other.again, (std::vector{std::pair<std::string, std::string>("new", "p1")}));
     ASSERT_EQ(other.moved.size(), 1U);
     EXPECT_EQ(other.moved[0].id, "v1");
     EXPECT_EQ(other.moved[0].joint, 0);
+    edited.replace("\nnew,-7", "\nnew,-6");
+    EXPECT_EQ(content().added, std::vector<std::string>{"new"});
     edited.replace("\nv1,", "\np2,");
     EXPECT_NE(input_error_of(content).find("visits 'p2' at other joints than before"),
               std::string::npos);

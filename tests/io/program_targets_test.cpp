@@ -340,7 +340,8 @@ TEST(ProgramTargets, OfSpoiltStatementsAreRefused) {
     expect(ProgramFormat::Fanuc, fanuc("K P[1] 10% FINE"), "CELL.LS:4:6: has ' P['");
     expect(ProgramFormat::Fanuc, fanuc("L P[x] 10% FINE"), "names no position");
     expect(ProgramFormat::Fanuc, fanuc("C P[1]\n    :  P[2] 9mm/sec FINE"), "moves to P[2], which");
-    expect(ProgramFormat::Fanuc, fanuc("L P[1:a] -9mm/sec FINE"), "has '-9mm/sec'; must not be");
+    expect(ProgramFormat::Fanuc, fanuc("L P[1:a] -9mm/sec FINE"),
+           "has '-9mm/sec'; must be above 0");
     EXPECT_EQ(Written(ProgramFormat::Fanuc, fanuc("C P[1]\n    :  P[1] 9mm/sec FINE")).error(),
               "no error");
 }

@@ -432,14 +432,38 @@ TEST(RobotPrograms, AreSplitWhereAControllerNeedsIt) {
         EXPECT_LE(std::ranges::count(text, '\n'), 1400) << file;
     }
     EXPECT_EQ(read_robot_program(path, ProgramFormat::Kuka, campaign.controller).size(), 1000U);
-    // 9999 lines at most.
-    while (program.stops.size() < 4000) program.stops.push_back(pose);
     EXPECT_NE(input_error_of([&] {
-                  write_robot_program(folder.path("LONG.ls"), ProgramFormat::Fanuc, program, "",
-                                      campaign, {});
-              }).find("must be at most 9999"),
+                  program_files(folder.path("name_of_twenty_chars.src"), ProgramFormat::Kuka,
+                                program);
+              }).find("must have a name of at most 18"),
               std::string::npos);
-    EXPECT_EQ(folder.file_count(), 8U);
+    // 9999 lines at most.
+    while (program.stops.size() < 7000) program.stops.push_back(pose);
+    for (const auto& [name, format] : {std::pair{"Long.ls", ProgramFormat::Fanuc},
+                                       std::pair{"LONG.JBI", ProgramFormat::Yaskawa}}) {
+        const std::string whole = folder.path(name);
+        write_robot_program(whole, format, program, "", campaign, {});
+        const auto parts = program_files(whole, format, program);
+        EXPECT_EQ(parts.size(), 4U) << name;
+        for (const std::string& file : parts) {
+            const std::string text = detail::read_file(file);
+            const std::string from = format == ProgramFormat::Fanuc ? "/MN\n" : "//INST\r\n";
+            const std::string to = format == ProgramFormat::Fanuc ? "/POS\n" : "END\r\n";
+            const auto begin = text.begin() + static_cast<long>(text.find(from) + from.size());
+            const auto end = text.begin() + static_cast<long>(text.rfind(to));
+            EXPECT_LE(std::count(begin, end, '\n'), 9999 + 3) << file;
+        }
+        const auto stops = read_robot_program(whole, format, campaign.controller);
+        ASSERT_EQ(stops.size(), 7000U) << name;
+        EXPECT_TRUE(
+            std::ranges::equal(stops, program.stops, {}, &ProgramStop::label, &ProgramStop::label));
+        // Of a part that was not copied nothing is passed over.
+        std::filesystem::remove(parts.back());
+        EXPECT_NE(input_error_of([&] {
+                      read_robot_program(whole, format, campaign.controller);
+                  }).find("calls a program that cannot be used"),
+                  std::string::npos);
+    }
 }
 
 /// The times of all waits in a program, s.

@@ -118,7 +118,10 @@ struct ProgramContent {
     std::vector<std::string> purposes;
     std::vector<std::string> dropped;  ///< poses of the plan that the program does not visit
     std::vector<MovedPose> moved;      ///< poses elsewhere than sent, by over half a step
-    std::vector<std::string> added;    ///< names that the plan has none of
+    std::vector<std::string> added;  ///< names that the plan has none of, elsewhere than its poses
+    /// Names that the plan has none of at one of its poses, and that: a visit of the reference
+    /// pose.
+    std::vector<std::pair<std::string, std::string>> again;
     /// Poses that a stop without a name is at.
     std::vector<std::string> recognised;
     /// Stops without a name where the program waits, at none of the plan's poses: "stop5" is the

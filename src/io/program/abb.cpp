@@ -87,11 +87,28 @@ std::vector<TextLine> abb_statements(const TextLine& line) {
     return statements;
 }
 
+/// Throws InputError for a time to wait below 0, and for a declared speed of the tool or of its
+/// turning, the first two of a speeddata, that is not above 0.
+void check_abb_amounts(const TextLine& statement) {
+    const std::string_view text = statement.text;
+    if (statement.begins_with("WaitTime")) {
+        check_time(statement, text, text.substr(std::max<std::size_t>(text.rfind(',') + 1, 8)));
+    }
+    const std::size_t open = text.find(":=[");
+    if (!statement.has("speeddata") || open == text.npos) return;
+    const std::string_view speeds = text.substr(open + 3);
+    const std::size_t comma = std::min(speeds.find(','), speeds.size() - 1);
+    check_speed(statement, text, speeds.substr(0, comma));
+    const std::string_view turning = speeds.substr(comma + 1);
+    check_speed(statement, text, turning.substr(0, turning.find_first_of(",]")));
+}
+
 void check_abb(const TextLine& line) {
     const std::string_view moves = abb_program().rules.moves;
     for (const TextLine& statement : abb_statements(line)) {
         if (statement.begins_with("!")) continue;
         check_target(abb_program().rules, statement, moves);
+        check_abb_amounts(statement);
         if (!is_word(first_word(statement.text), moves)) continue;
         if (statement.text.ends_with(',')) continue;  // goes on in the next line
         const auto end = statement.text.data() + statement.text.size() - line.text.data();

@@ -70,7 +70,11 @@ std::vector<io::ProgramStop> read_program_table(const std::string& path,
         std::vector<double> numbers;
         for (std::size_t k = 1; k < columns.size(); ++k) numbers.push_back(number_at(columns[k]));
         stops.move({"", reader.locate(0)}, numbers);
-        if (dwell < width && number_at(dwell) > 0) stops.wait();
+        if (dwell < width) {
+            const TextLine time{reader.fields()[dwell], reader.locate(dwell)};
+            check_time(time, time.text, time.text);
+            if (number_at(dwell) > 0) stops.wait();
+        }
     }
     return stops.finish();
 }

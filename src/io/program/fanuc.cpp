@@ -7,6 +7,7 @@
 
 #include "core/text.hpp"
 #include "io/format/text.hpp"
+#include "program_parts.hpp"
 #include "program_stops.hpp"
 
 /// FANUC TP programs as text (.LS).
@@ -14,6 +15,7 @@ namespace posewise::detail {
 namespace {
 
 constexpr std::size_t most_fanuc_lines = 9999;
+constexpr std::size_t other_fanuc_lines = 3;  // before the first stop
 
 class FanucBody {
   public:
@@ -155,12 +157,17 @@ void check_fanuc(const TextLine& line) {
         if (statement.begins_with(comment)) return;
     }
     check_target(fanuc_program().rules, statement, fanuc_program().rules.moves);
-    if (fanuc_move_index(statement) == 0) return;
     const std::string_view text = statement.text;
-    const std::string_view speed = trim(text.substr(text.find(']') + 1));
-    if (!speed.starts_with('-')) return;
-    throw statement.error(fmt::format("has {}; must not be below 0",
-                                      quote(speed.substr(0, speed.find_first_of(" \t")))));
+    if (statement.begins_with("WAIT")) {
+        const std::string_view time = trim(text.substr(4));
+        check_time(statement, time, time.substr(0, time.find('(')));
+    }
+    if (fanuc_move_index(statement) == 0) return;
+    std::string_view speed = trim(text.substr(text.find(']') + 1));
+    speed = speed.substr(0, speed.find_first_of(" \t"));
+    const std::string_view number = speed.substr(0, speed.find_first_not_of("+-.0123456789"));
+    speed.ends_with('%') ? check_percent(statement, speed, number)
+                         : check_speed(statement, speed, number);
 }
 
 /// Throws InputError where a position is stated twice, or a move's nowhere.
@@ -185,7 +192,15 @@ void check_fanuc_positions(const std::vector<TextLine>& lines) {
     }
 }
 
-std::vector<FileContent> fanuc_files(const std::string& path, const io::RobotProgram& program) {
+FileContent fanuc_file(const std::string& path, const std::string& name, const FanucBody& body,
+                       const std::string& positions) {
+    return {path, fmt::format("/PROG  {}\n/ATTR\nCOMMENT\t\t= \"posewise\";\nDEFAULT_GROUP\t= "
+                              "1,*,*,*,*;\n/MN\n{}/POS\n{}/END\n",
+                              name, body.text(), positions)};
+}
+
+FileContent fanuc_module(const std::string& path, const std::string& name,
+                         const io::RobotProgram& program) {
     FanucBody body;
     std::string positions;
     body.add(fmt::format("  !{}", comment_text(program.title, 32)));
@@ -195,16 +210,27 @@ std::vector<FileContent> fanuc_files(const std::string& path, const io::RobotPro
         add_fanuc_stop(program, program.stops[k], k + 1, body);
         positions += fanuc_position(program, program.stops[k], k + 1);
     }
-    if (body.count() > most_fanuc_lines) {
-        throw InputError(
-            fmt::format("a program for fanuc of {} lines; must be at most {}: repeat "
-                        "it less often",
-                        body.count(), most_fanuc_lines));
+    return fanuc_file(path, name, body, positions);
+}
+
+std::vector<FileContent> fanuc_files(const std::string& path, const io::RobotProgram& program) {
+    const std::string name = io::legal_program_name(io::ProgramFormat::Fanuc, stem_of(path));
+    const std::vector<io::RobotProgram> parts =
+        parts_of(program, most_fanuc_lines - other_fanuc_lines, [&](const io::ProgramStop& stop) {
+            FanucBody body;
+            add_fanuc_stop(program, stop, 1, body);
+            return body.count();
+        });
+    if (parts.size() == 1) return {fanuc_module(path, name, program)};
+    const std::vector<std::string> names = part_names(fanuc_program().rules, name, parts.size());
+    FanucBody calls;
+    calls.add(fmt::format("  !{}", comment_text(program.title, 32)));
+    for (const std::string& part : names) calls.add("  CALL " + part);
+    std::vector<FileContent> files{fanuc_file(path, name, calls, "")};
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        files.push_back(fanuc_module(part_path(path, names[k]), names[k], parts[k]));
     }
-    return {{path, fmt::format("/PROG  {}\n/ATTR\nCOMMENT\t\t= \"posewise\";\nDEFAULT_GROUP\t= "
-                               "1,*,*,*,*;\n/MN\n{}/POS\n{}/END\n",
-                               io::legal_program_name(io::ProgramFormat::Fanuc, stem_of(path)),
-                               body.text(), positions)}};
+    return files;
 }
 
 /// Throws InputError unless the joint move ends in an exact stop at its position.
@@ -223,7 +249,15 @@ void check_fanuc_statement(const TextLine& line) {
     }
 }
 
-std::vector<io::ProgramStop> read_fanuc(const std::string& path, const ControllerJoints& joints) {
+/// The file of the part that "CALL NAME_1" calls; empty: it calls none.
+std::string called_fanuc_part(const std::string& path, const TextLine& statement) {
+    if (!is_word(first_word(statement.text), "CALL")) return "";
+    return part_path(path, trim(statement.text.substr(4)));
+}
+
+/// The stops of a file and, if it has parts, of the programs NAME_1 ... that it calls.
+std::vector<io::ProgramStop> read_fanuc_module(const std::string& path,
+                                               const ControllerJoints& joints, bool has_parts) {
     const ProgramFile file(path);
     const std::vector<TextLine>& lines = file.lines();
     const auto section = [&](std::string_view name) {
@@ -253,6 +287,11 @@ std::vector<io::ProgramStop> read_fanuc(const std::string& path, const Controlle
                     "moves to a position without joints; must be in degrees under /POS");
             }
             stops.move(line, found->second);
+        } else if (const std::string part = called_fanuc_part(path, line);
+                   has_parts && !part.empty()) {
+            stops.call(line, read_part(line, part, [&](const std::string& other) {
+                           return read_fanuc_module(other, joints, false);
+                       }));
         } else if (!line.begins_with("//")) {
             check_fanuc_statement(line);
             stops.pass(line);
@@ -261,12 +300,17 @@ std::vector<io::ProgramStop> read_fanuc(const std::string& path, const Controlle
     return stops.finish();
 }
 
+std::vector<io::ProgramStop> read_fanuc(const std::string& path, const ControllerJoints& joints) {
+    return read_fanuc_module(path, joints, true);
+}
+
 }  // namespace
 
 const ProgramKind& fanuc_program() {
     static const ProgramKind kind{{.ending = ".ls",
                                    .decimals = 3,
                                    .longest_name = 32,
+                                   .has_parts = true,
                                    .is_upper = true,
                                    .words = "CON PRN AUX NUL COM1 LPT1",
                                    .wait_step = 0.01,

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
 
 #include "core/text.hpp"
 #include "io/format/text.hpp"
+#include "program_parts.hpp"
 #include "program_stops.hpp"
 #include "reserved_words.hpp"
 
@@ -13,6 +15,7 @@ namespace posewise::detail {
 namespace {
 
 constexpr std::size_t most_kuka_lines = 1400;
+constexpr std::size_t other_kuka_lines = 20;  // of a program's begin and end
 
 constexpr std::string_view krl_header = "&ACCESS RVP\n&REL 1\n";
 
@@ -36,10 +39,14 @@ std::string kuka_stop(const io::RobotProgram& program, const io::ProgramStop& st
     return text;
 }
 
-/// What a program does first: the interpolation's data, and no jump at the first block.
-std::string begin_text(const io::RobotProgram& program) {
-    return fmt::format("BAS(#INITMOV,0)\nBAS(#VEL_PTP,{})\n$TOOL=$NULLFRAME\nPTP $AXIS_ACT\n",
-                       program.speed_percent);
+/// What a program does first, the interpolation's data, and no jump at the first block; then its
+/// stops.
+std::string kuka_body(const io::RobotProgram& program) {
+    std::string text =
+        fmt::format("BAS(#INITMOV,0)\nBAS(#VEL_PTP,{})\n$TOOL=$NULLFRAME\nPTP $AXIS_ACT\n",
+                    program.speed_percent);
+    for (const io::ProgramStop& stop : program.stops) text += kuka_stop(program, stop);
+    return text;
 }
 
 void add_module(const std::string& path, const std::string& name, const std::string& body,
@@ -48,23 +55,6 @@ void add_module(const std::string& path, const std::string& name, const std::str
                      fmt::format("{}DEF {}( )\n{}END\n", krl_header, name, body)});
     files.push_back(
         {sibling_of(path, name + ".dat"), fmt::format("{}DEFDAT {}\nENDDAT\n", krl_header, name)});
-}
-
-std::size_t line_count(const std::string& text) {
-    return static_cast<std::size_t>(std::ranges::count(text, '\n'));
-}
-
-/// The bodies of as many programs as are needed.
-std::vector<std::string> split_stops(const io::RobotProgram& program) {
-    std::vector<std::string> parts(1);
-    for (const io::ProgramStop& stop : program.stops) {
-        const std::string text = kuka_stop(program, stop);
-        constexpr std::size_t others = 20;  // lines of begin and end
-        if (line_count(parts.back()) + line_count(text) + others > most_kuka_lines)
-            parts.emplace_back();
-        parts.back() += text;
-    }
-    return parts;
 }
 
 /// Throws InputError for an axis "E1 10.0" that is not one of the robot's joints, unless it is 0.
@@ -128,24 +118,41 @@ void check_kuka(const TextLine& line) {
     const std::string_view moves = kuka_program().rules.moves;
     check_target(kuka_program().rules, statement, moves);
     if (is_word(first_word(statement.text), moves)) check_brackets(statement);
+    const std::string_view text = statement.text;
+    if (const std::size_t wait = text.find("SEC");
+        statement.begins_with("WAIT") && wait != text.npos) {
+        check_time(statement, text, text.substr(wait + 3));
+    }
+    const std::string_view speed = "#VEL_PTP";
+    if (const std::size_t set = text.find(speed);
+        statement.begins_with("BAS") && set != text.npos) {
+        const std::size_t comma = std::min(text.find(',', set), text.size() - 1);
+        check_percent(statement, text, text.substr(comma + 1, text.find(')', comma) - comma - 1));
+    }
 }
 
-std::vector<io::ProgramStop> read_part(const std::string& path, const TextLine& call,
-                                       const ControllerJoints& joints);
+/// The file of the part that "NAME_1( )" calls; empty: it calls none.
+std::string called_kuka_part(const std::string& path, const TextLine& line) {
+    const std::size_t open = line.text.find('(');
+    if (open == std::string_view::npos || !line.text.ends_with(')')) return "";
+    return part_path(path, trim(line.text.substr(0, open)));
+}
 
 /// The stops of a file and, if it has parts, of the programs NAME_1 ... that it calls.
-std::vector<io::ProgramStop> read_module(const std::string& path, const ControllerJoints& joints,
-                                         bool has_parts) {
+std::vector<io::ProgramStop> read_kuka_module(const std::string& path,
+                                              const ControllerJoints& joints, bool has_parts) {
     const ProgramFile file(path, "END");
-    const std::string part = stem_of(path) + "_";
     StopCollector stops(kuka_program().rules, joints);
     for (const TextLine& line : file.lines()) {
         check_kuka(line);
         if (line.begins_with(";FOLD") || line.begins_with(";ENDFOLD")) continue;
         if (line.begins_with(";")) {
             stops.note(line.text.substr(1));
-        } else if (has_parts && line.begins_with(part) && line.text.ends_with(')')) {
-            stops.call(line, read_part(path, line, joints));
+        } else if (const std::string part = called_kuka_part(path, line);
+                   has_parts && !part.empty()) {
+            stops.call(line, read_part(line, part, [&](const std::string& other) {
+                           return read_kuka_module(other, joints, false);
+                       }));
         } else if (line.begins_with("PTP") && line.has("$AXIS_ACT")) {
             continue;
         } else if (line.begins_with("PTP_REL")) {
@@ -161,42 +168,28 @@ std::vector<io::ProgramStop> read_module(const std::string& path, const Controll
     return stops.finish();
 }
 
-/// The stops of the program beside `path` that a line of it calls.
-std::vector<io::ProgramStop> read_part(const std::string& path, const TextLine& call,
-                                       const ControllerJoints& joints) {
-    const std::string_view name = trim(call.text.substr(0, call.text.find('(')));
-    if (!is_identifier(name)) throw call.error("calls no program; must be like NAME_1( )");
-    const std::string part = sibling_of(path, std::string(name) + ending_of(path));
-    try {
-        return read_module(part, joints, false);
-    } catch (const InputError& problem) {
-        throw call.error(fmt::format("calls a program that cannot be used: {}", problem.what()));
-    }
-}
-
 std::vector<FileContent> kuka_files(const std::string& path, const io::RobotProgram& program) {
     const std::string name = stem_of(path);
-    const std::vector<std::string> parts = split_stops(program);
+    const std::vector<io::RobotProgram> parts =
+        parts_of(program, most_kuka_lines - other_kuka_lines, [&](const io::ProgramStop& stop) {
+            return static_cast<std::size_t>(std::ranges::count(kuka_stop(program, stop), '\n'));
+        });
     const std::string title = fmt::format("; {}\n", comment_text(program.title));
     std::vector<FileContent> files;
     if (parts.size() == 1) {
-        add_module(path, name, title + begin_text(program) + parts[0], files);
+        add_module(path, name, title + kuka_body(program), files);
         return files;
     }
-    std::string calls = title;
+    const std::vector<std::string> names = part_names(kuka_program().rules, name, parts.size());
+    add_module(path, name, fmt::format("{}{}( )\n", title, fmt::join(names, "( )\n")), files);
     for (std::size_t k = 0; k < parts.size(); ++k) {
-        const std::string part = fmt::format("{}_{}", name, k + 1);
-        calls += part + "( )\n";
-    }
-    add_module(path, name, calls, files);
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-        add_module(path, fmt::format("{}_{}", name, k + 1), begin_text(program) + parts[k], files);
+        add_module(path, names[k], kuka_body(parts[k]), files);
     }
     return files;
 }
 
 std::vector<io::ProgramStop> read_kuka(const std::string& path, const ControllerJoints& joints) {
-    return read_module(path, joints, true);
+    return read_kuka_module(path, joints, true);
 }
 
 }  // namespace
@@ -206,6 +199,7 @@ const ProgramKind& kuka_program() {
         {.ending = ".src",
          .decimals = 5,
          .longest_name = 20,
+         .has_parts = true,
          .words = krl_words,
          .flow = {.routines = "DEF DEFFCT",
                   .opens = "IF FOR WHILE LOOP REPEAT SWITCH",

@@ -113,16 +113,22 @@ class ContentReader {
             const auto found = expected_.find(detail::lower_case(stop.label));
             return found == expected_.end() ? stop.label : found->second.pose->id;
         }
-        for (const auto& [label, expected] : expected_) {
-            if (!is_same(stop.joints, expected.joints, steps_)) continue;
-            note(expected.pose->id, content_.recognised);
-            return expected.pose->id;
+        if (const PlannedPose* const pose = pose_at(stop.joints)) {
+            note(pose->id, content_.recognised);
+            return pose->id;
         }
         if (!stop.is_measured) return "";
         std::string id = fmt::format("stop{}", stop_count_);
         while (joints_of_.contains(id) || expected_.contains(id)) id += '_';
         note(id, content_.unnamed);
         return id;
+    }
+
+    /// The plan's pose at these joints; nullptr: there is none.
+    const PlannedPose* pose_at(const VectorXd& joints) const {
+        const auto found = std::ranges::find_if(
+            expected_, [&](const auto& one) { return is_same(joints, one.second.joints, steps_); });
+        return found == expected_.end() ? nullptr : found->second.pose;
     }
 
     static void note(const std::string& id, std::vector<std::string>& ids) {
@@ -146,7 +152,10 @@ class ContentReader {
         add_row(id, stop.joints, is_known ? found->second.purpose : detail::to_calibrate);
         if (!sent_) return;
         if (is_known) return find_moved(id, stop.joints - found->second.joints);
-        if (!stop.label.empty()) content_.added.push_back(id);
+        if (stop.label.empty()) return;
+        const PlannedPose* const pose = pose_at(stop.joints);
+        if (pose == nullptr) return content_.added.push_back(id);
+        content_.again.emplace_back(id, pose->id);
     }
 
     void find_moved(const std::string& id, const VectorXd& change) {

@@ -18,6 +18,15 @@ char upper_case(char letter) {
 
 bool is_same_letter(char a, char b) { return upper_case(a) == upper_case(b); }
 
+/// Throws InputError where `number` is one that `is_possible` is not true of.
+template <typename IsPossible>
+void check_amount(const TextLine& line, std::string_view shown, std::string_view number,
+                  const IsPossible& is_possible, std::string_view rule) {
+    const ParsedNumber parsed = parse_number(trim(number));
+    if (!parsed.ok() || is_possible(parsed.value)) return;
+    throw line.error(fmt::format("has {}; must {}", quote(trim(shown)), rule));
+}
+
 }  // namespace
 
 std::string lower_case(std::string text) {
@@ -196,6 +205,29 @@ void check_target(const ProgramRules& rules, const TextLine& statement, std::str
     throw statement.error(
         fmt::format("has {} as a move has, but is none that is known; must be put right or removed",
                     quote(rules.target)));
+}
+
+void check_percent(const TextLine& line, std::string_view shown, std::string_view number) {
+    check_amount(
+        line, shown, number, [](double value) { return value > 0 && value <= 100; },
+        "be above 0 and at most 100 per cent");
+}
+
+void check_speed(const TextLine& line, std::string_view shown, std::string_view number) {
+    check_amount(
+        line, shown, number, [](double value) { return value > 0; }, "be above 0");
+}
+
+void check_time(const TextLine& line, std::string_view shown, std::string_view number) {
+    check_amount(
+        line, shown, number, [](double value) { return value >= 0; }, "not be below 0");
+}
+
+std::string_view first_argument(const TextLine& line, std::string_view call) {
+    if (!line.begins_with(call)) return {};
+    const std::string_view rest = trim(line.text.substr(call.size()));
+    if (!rest.starts_with('(')) return {};
+    return trim(rest.substr(1, rest.find_first_of(",)") - 1));
 }
 
 std::vector<double> read_numbers(const TextLine& line, std::string_view text) {

@@ -31,6 +31,7 @@ struct ProgramRules {
     bool has_six_joints = true;    ///< that turn; else any
     bool has_program_name = true;  ///< the file must be called as the program is
     std::size_t longest_name = 32;
+    bool has_parts = false;  ///< what is too long is split, see program_parts.hpp
     bool is_upper = false;
     std::string_view words = "";  ///< that name no program, separated by blanks
     bool has_pause = true;
@@ -134,6 +135,17 @@ void check_brackets(const TextLine& statement);
 /// Throws InputError where a statement has a move's target, of joint values, but none of these
 /// words (separated by blanks) begins it or stands before the target: a slip in the word.
 void check_target(const ProgramRules& rules, const TextLine& statement, std::string_view moves);
+
+/// Throws InputError where a number is stated that is no speed in per cent: 0 or less, or over 100.
+/// `shown` is what the statement has there. What is no number (a register, a variable) passes.
+void check_percent(const TextLine& line, std::string_view shown, std::string_view number);
+/// Likewise where it is no other speed: 0 or less.
+void check_speed(const TextLine& line, std::string_view shown, std::string_view number);
+/// Likewise where it is no time to wait: below 0.
+void check_time(const TextLine& line, std::string_view shown, std::string_view number);
+/// What stands between the bracket behind `call` and the next comma or bracket, if the line begins
+/// so, "2.0" of "sleep(2.0)"; else empty.
+std::string_view first_argument(const TextLine& line, std::string_view call);
 
 /// The finite numbers of `text`, separated by commas. Throws InputError at the line.
 std::vector<double> read_numbers(const TextLine& line, std::string_view text);

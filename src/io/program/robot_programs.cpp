@@ -194,7 +194,7 @@ std::vector<std::string> program_files(const std::string& path, ProgramFormat fo
 std::vector<std::string> stale_program_files(const std::string& path, ProgramFormat format,
                                              const RobotProgram& program) {
     std::vector<std::string> stale;
-    if (format != ProgramFormat::Kuka) return stale;
+    if (!kind_of(format).rules.has_parts) return stale;
     const std::vector<std::string> files = program_files(path, format, program);
     for (Index part = 1;; ++part) {
         const std::string name = fmt::format("{}_{}", detail::stem_of(path), part);

@@ -67,6 +67,12 @@ std::string ros_states(const io::RobotProgram& program) {
     return text;
 }
 
+/// A time, s. Throws InputError below 0.
+double read_seconds(const YamlValue& value) {
+    if (value.number() < 0) throw value.error("is below 0; must not be");
+    return value.number();
+}
+
 /// The point's positions in the order of the controller's joints.
 std::vector<double> read_ros_positions(const YamlMap& trajectory, const ControllerJoints& joints) {
     const std::vector<YamlValue> names = trajectory.require("joint_names").list();
@@ -76,6 +82,12 @@ std::vector<double> read_ros_positions(const YamlMap& trajectory, const Controll
     }
     const YamlMap point(points[0],
                         {"positions", "velocities", "accelerations", "effort", "time_from_start"});
+    if (const auto time = point.find("time_from_start")) {
+        const YamlMap parts(*time, {"sec", "nanosec"});
+        for (const char* const part : {"sec", "nanosec"}) {
+            if (const auto stated = parts.find(part)) read_seconds(*stated);
+        }
+    }
     const std::vector<double> positions = point.require("positions").numbers(names.size());
     std::vector<double> ordered(static_cast<std::size_t>(joints.count()));
     std::vector<bool> is_known(ordered.size());
@@ -120,7 +132,7 @@ std::vector<io::ProgramStop> read_ros2(const std::string& path, const Controller
         const TextLine line{"", map.require("trajectory").location()};
         stops.move(line, read_ros_positions(trajectory, joints));
         const auto dwell = map.find("dwell_s");
-        if (dwell && dwell->number() > 0) stops.wait();
+        if (dwell && read_seconds(*dwell) > 0) stops.wait();
     }
     return stops.finish();
 }

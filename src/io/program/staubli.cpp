@@ -151,6 +151,10 @@ void check_val3_move(const TextLine& line, const XmlDocument& data) {
             fmt::format("moves as {} says, which the project's data have none of", quote(name)));
     }
     for (const pugi::xml_node value : values.children("Value")) {
+        for (const char* const speed : {"accel", "vel", "decel"}) {
+            const std::string_view stated = value.attribute(speed).value();
+            check_speed(line, fmt::format("{}=\"{}\"", speed, stated), stated);
+        }
         if (std::string_view(value.attribute("blend").value()) == "off") continue;
         throw line.error(
             fmt::format("does not stop at its position; {} must have blend=\"off\"", quote(name)));
@@ -189,6 +193,7 @@ std::vector<io::ProgramStop> read_staubli(const std::string& path, const Control
             stops.move(line, position);
         } else {
             check_val3_statement(line);
+            check_time(line, line.text, first_argument(line, "delay"));
             stops.pass(line);
         }
     }

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <array>
+
 #include "core/text.hpp"
 #include "io/format/text.hpp"
 #include "program_stops.hpp"
@@ -67,10 +69,31 @@ std::vector<UrArgument> ur_arguments(const TextLine& move) {
     return arguments;
 }
 
+/// Throws InputError where a move has no acceleration or speed (a and v, or the first two), unless
+/// it states the time that it takes (t, or the third) in their place.
+void check_ur_speed(const TextLine& move, const std::vector<UrArgument>& arguments) {
+    constexpr std::array<std::string_view, 3> names{"a", "v", "t"};
+    std::array<const UrArgument*, 3> of{};
+    for (std::size_t k = 0; k < arguments.size(); ++k) {
+        for (std::size_t n = 0; n < names.size(); ++n) {
+            const auto& [text, name, value] = arguments[k];
+            if (!text.empty() && (name.empty() ? k == n + 1 : name == names[n])) {
+                of[n] = &arguments[k];
+            }
+        }
+    }
+    if (of[2] != nullptr && !(of[2]->value.ok() && of[2]->value.value == 0)) return;
+    for (const UrArgument* const one : {of[0], of[1]}) {
+        if (one == nullptr || !one->value.ok() || one->value.value > 0) continue;
+        throw move.error(fmt::format("has {}; must be above 0", quote(one->text)));
+    }
+}
+
 void check_ur(const TextLine& line) {
     const std::string_view moves = ur_program().rules.moves;
     const TextLine statement = without_comment(line);
     check_target(ur_program().rules, statement, moves);
+    check_time(statement, statement.text, first_argument(statement, "sleep"));
     const std::string_view word = first_word(statement.text);
     if (!is_word(word, moves)) return;
     if (lower_case(std::string(word)) != word) {
@@ -79,10 +102,12 @@ void check_ur(const TextLine& line) {
                         lower_case(std::string(word))));
     }
     check_brackets(statement);
-    for (const UrArgument& argument : ur_arguments(statement)) {
+    const std::vector<UrArgument> arguments = ur_arguments(statement);
+    for (const UrArgument& argument : arguments) {
         if (!argument.value.ok() || argument.value.value >= 0) continue;
         throw line.error(fmt::format("has {}; must not be below 0", quote(argument.text)));
     }
+    if (word.starts_with("move")) check_ur_speed(statement, arguments);
 }
 
 /// What is between the brackets of "movej([...], ...".

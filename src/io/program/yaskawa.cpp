@@ -9,13 +9,15 @@
 
 #include "core/text.hpp"
 #include "io/format/text.hpp"
+#include "program_parts.hpp"
 #include "program_stops.hpp"
 
 /// Yaskawa INFORM jobs (.jbi) in pulses, whose lines end in CR LF.
 namespace posewise::detail {
 namespace {
 
-constexpr std::size_t most_positions = 9999;
+constexpr std::size_t most_yaskawa_lines = 9999;  // of a job's steps
+constexpr std::size_t other_yaskawa_lines = 3;    // before the first stop, and END
 constexpr double most_pulses = 2147483647;
 
 std::string pulses_text(const ControllerJoints& joints, const VectorXd& values) {
@@ -71,9 +73,7 @@ void check_yaskawa_move(const TextLine& line) {
         const std::string_view word = rest.substr(0, blank);
         rest = trim(rest.substr(blank));
         if (position < 2) continue;
-        if (word.starts_with("VJ=") && !(parse_number(word.substr(3)).value > 0)) {
-            throw line.error(fmt::format("has {}; must be above 0", quote(word)));
-        }
+        if (word.starts_with("VJ=")) check_percent(line, word, word.substr(3));
         const bool is_known = word.starts_with("VJ=") || word == "PL=0" ||
                               word.starts_with("ACC=") || word.starts_with("DEC=");
         if (is_known) continue;
@@ -101,29 +101,56 @@ void check_kind(const TextLine& line) {
     }
 }
 
-std::vector<FileContent> yaskawa_files(const std::string& path, const io::RobotProgram& program) {
-    if (program.stops.size() > most_positions) {
-        throw InputError(
-            fmt::format("a program for yaskawa with {} moves; must be at most {}: "
-                        "repeat it less often",
-                        program.stops.size(), most_positions));
-    }
-    std::string text = fmt::format(
-        "/JOB\r\n//NAME {}\r\n//POS\r\n///NPOS {},0,0,0,0,0\r\n///TOOL 0\r\n///POSTYPE "
-        "PULSE\r\n///PULSE\r\n",
-        io::legal_program_name(io::ProgramFormat::Yaskawa, stem_of(path)), program.stops.size());
+FileContent yaskawa_file(const std::string& path, const std::string& name,
+                         const io::RobotProgram& program, const std::string& positions,
+                         const std::string& body) {
+    return {path, fmt::format("/JOB\r\n//NAME {}\r\n//POS\r\n///NPOS {},0,0,0,0,0\r\n///TOOL 0\r\n"
+                              "///POSTYPE PULSE\r\n///PULSE\r\n{}//INST\r\n///DATE {}\r\n///ATTR "
+                              "SC,RW\r\n///GROUP1 RB1\r\nNOP\r\n'{}\r\n{}END\r\n",
+                              name, std::ranges::count(positions, '\n'), positions, program.date,
+                              comment_text(program.title, 32), body)};
+}
+
+FileContent yaskawa_job(const std::string& path, const std::string& name,
+                        const io::RobotProgram& program) {
+    std::string positions;
     std::string body;
     for (std::size_t k = 0; k < program.stops.size(); ++k) {
         const io::ProgramStop& stop = program.stops[k];
-        text += fmt::format("C{:05}={}\r\n", k, pulses_text(program.joints, stop.joints));
+        positions += fmt::format("C{:05}={}\r\n", k, pulses_text(program.joints, stop.joints));
         body += yaskawa_stop(program, stop, k);
     }
-    text += fmt::format("//INST\r\n///DATE {}\r\n///ATTR SC,RW\r\n///GROUP1 RB1\r\nNOP\r\n'{}\r\n",
-                        program.date, comment_text(program.title, 32));
-    return {{path, text + body + "END\r\n"}};
+    return yaskawa_file(path, name, program, positions, body);
 }
 
-std::vector<io::ProgramStop> read_yaskawa(const std::string& path, const ControllerJoints& joints) {
+std::vector<FileContent> yaskawa_files(const std::string& path, const io::RobotProgram& program) {
+    const std::string name = io::legal_program_name(io::ProgramFormat::Yaskawa, stem_of(path));
+    const std::vector<io::RobotProgram> parts = parts_of(
+        program, most_yaskawa_lines - other_yaskawa_lines, [&](const io::ProgramStop& stop) {
+            return static_cast<std::size_t>(
+                std::ranges::count(yaskawa_stop(program, stop, 0), '\n'));
+        });
+    if (parts.size() == 1) return {yaskawa_job(path, name, program)};
+    const std::vector<std::string> names = part_names(yaskawa_program().rules, name, parts.size());
+    std::string calls;
+    for (const std::string& part : names) calls += fmt::format("CALL JOB:{}\r\n", part);
+    std::vector<FileContent> files{yaskawa_file(path, name, program, "", calls)};
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        files.push_back(yaskawa_job(part_path(path, names[k]), names[k], parts[k]));
+    }
+    return files;
+}
+
+/// The file of the part that "CALL JOB:NAME_1" calls; empty: it calls none.
+std::string called_yaskawa_part(const std::string& path, const TextLine& line) {
+    constexpr std::string_view call = "CALL JOB:";
+    if (!line.begins_with(call)) return "";
+    return part_path(path, trim(line.text.substr(call.size())));
+}
+
+/// The stops of a file and, if it has parts, of the jobs NAME_1 ... that it calls.
+std::vector<io::ProgramStop> read_yaskawa_job(const std::string& path,
+                                              const ControllerJoints& joints, bool has_parts) {
     const ProgramFile file(path, "END");
     std::map<std::string, std::vector<double>> positions;
     StopCollector stops(yaskawa_program().rules, joints);
@@ -149,12 +176,24 @@ std::vector<io::ProgramStop> read_yaskawa(const std::string& path, const Control
                     "moves to a position that the job does not state; must be like MOVJ C00000");
             }
             stops.move(line, degrees_of(found->second, joints));
+        } else if (const std::string part = called_yaskawa_part(path, line);
+                   has_parts && !part.empty()) {
+            stops.call(line, read_part(line, part, [&](const std::string& other) {
+                           return read_yaskawa_job(other, joints, false);
+                       }));
         } else {
+            if (line.begins_with("TIMER") && equals != std::string_view::npos) {
+                check_time(line, line.text, line.text.substr(equals + 1));
+            }
             stops.pass(line);
         }
     }
     if (counted) check_count(*counted, positions.size());
     return stops.finish();
+}
+
+std::vector<io::ProgramStop> read_yaskawa(const std::string& path, const ControllerJoints& joints) {
+    return read_yaskawa_job(path, joints, true);
 }
 
 }  // namespace
@@ -163,6 +202,7 @@ const ProgramKind& yaskawa_program() {
     static const ProgramKind kind{{.ending = ".jbi",
                                    .decimals = 0,
                                    .longest_name = 32,
+                                   .has_parts = true,
                                    .is_upper = true,
                                    .wait_step = 0.01,
                                    .longest_wait = 655.35,  // 2^16 - 1 steps

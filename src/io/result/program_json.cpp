@@ -54,6 +54,8 @@ std::string to_json(const ProgramContent& content, const CampaignFile& campaign)
               turns ? to_degrees(pose.change) : mm_per_m * pose.change}});
     }
     document["added"] = content.added;
+    Json& again = document["again"] = Json::array();
+    for (const auto& [id, pose] : content.again) again.push_back({{"id", id}, {"at", pose}});
     document["recognised"] = content.recognised;
     document["unnamed"] = content.unnamed;
     document["visits"] = content.visits;
