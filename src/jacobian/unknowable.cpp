@@ -138,8 +138,10 @@ std::string state(const std::vector<std::string>& words, const char* keys) {
 Unknowable find_unknowable(const Campaign& campaign, const StopSignal& stop) {
     Unknowable found;
     Campaign bare = with_robot(campaign, without_parameters(campaign.robot));
-    // Most bases stand upright.
-    if (!campaign.has_nominal_base) bare.nominal.world_from_base.linear().setIdentity();
+    // Most bases stand upright, if not as a camera sees them.
+    if (!campaign.has_nominal_base && !campaign.sensor->has_view()) {
+        bare.nominal.world_from_base.linear().setIdentity();
+    }
     const auto& prior = campaign.prior;
     if ((prior && (prior->has_base || prior->has_sensor)) || parameter_count(bare) == 0) {
         return found;

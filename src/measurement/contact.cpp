@@ -11,6 +11,7 @@
 
 #include "model/sampling.hpp"
 #include "posewise/core/errors.hpp"
+#include "posewise/core/random.hpp"
 
 namespace posewise::detail {
 
@@ -175,6 +176,46 @@ ViewedPoses viewed_poses(const Campaign& campaign, const Parameters& parameters,
         }
     }
     return poses;
+}
+
+Isometry3d base_in_view(const Campaign& campaign) {
+    constexpr Index pose_count = 32;
+    constexpr Index direction_count = 32;
+    constexpr std::uint64_t seed = 20154;  // any: it only has to be the same every time
+    const Sensor& sensor = *campaign.sensor;
+    const RowMatrixXd drawn = random_configurations(campaign.robot, pose_count, seed);
+    const VectorXd no_errors = VectorXd::Zero(campaign.robot.parameter_count());
+    std::vector<Isometry3d> flanges;
+    Vector3d middle = Vector3d::Zero();
+    for (Index i = 0; i < pose_count; ++i) {
+        flanges.push_back(campaign.robot.base_from_flange(drawn.row(i).transpose(), no_errors));
+        middle += flanges.back().translation() / static_cast<double>(pose_count);
+    }
+    double reach = 0.1;  // m, where the flange hardly moves
+    for (const Isometry3d& flange : flanges) {
+        reach = std::max(reach, (flange.translation() - middle).norm());
+    }
+    RandomStream directions(seed);
+    Isometry3d best = Isometry3d::Identity();
+    double best_share = -1;
+    VectorXd clearances(sensor.target_count());
+    for (Index k = 0; k < direction_count; ++k) {
+        const Eigen::Quaterniond turn(directions.normal(), directions.normal(), directions.normal(),
+                                      directions.normal());
+        for (const double distance : {1.5 * reach, 3 * reach, 6 * reach}) {
+            const Isometry3d base = Eigen::Translation3d(0, 0, distance) * turn.normalized() *
+                                    Eigen::Translation3d(-middle);
+            double share = 0;
+            for (const Isometry3d& flange : flanges) {
+                sensor.view_clearances(base * flange, campaign.nominal.sensor, clearances);
+                share += static_cast<double>((clearances.array() >= 0).count());
+            }
+            if (share <= best_share) continue;
+            best_share = share;
+            best = base;
+        }
+    }
+    return best;
 }
 
 ShownPoses random_poses(const Campaign& campaign, const Parameters& parameters, Index count,

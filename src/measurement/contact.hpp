@@ -51,6 +51,11 @@ struct ViewedPoses : ShownPoses {
 ViewedPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, Index count,
                          std::uint64_t seed);
 
+/// A base from which a fixed camera, in whose frame the base is, sees much of what the robot moves:
+/// for a campaign that does not state one. Of some directions and distances that from which most
+/// random configurations are in view.
+Isometry3d base_in_view(const Campaign& campaign);
+
 /// Of random_configurations().
 ShownPoses random_poses(const Campaign& campaign, const Parameters& parameters, Index count,
                         std::uint64_t seed);

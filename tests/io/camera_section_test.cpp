@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "../../src/model/sampling.hpp"
 #include "campaign_text.hpp"
 #include "posewise/io/campaign_file.hpp"
 #include "posewise/io/measurements_file.hpp"
+#include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "support/slips.hpp"
@@ -446,6 +448,41 @@ TEST(ReadCamera, TakesFurtherCameras) {
         with_camera(replaced(two_cameras,
                              ",\n       place: {position_mm: [100, 0, 0], rpy_deg: [0, 5, 0]}", ""))
             .has_nominal_targets);
+}
+
+/// Where no base is stated, what is identifiable is judged with the board before the cameras.
+TEST(ReadCamera, StandsBeforeTheRobotWhereNoBaseIsStated) {
+    const std::string two = R"(
+name: arm
+robot:
+  class: industrial
+  joints: {q1: {limits_deg: [-40, -9]}, q2: {limits_deg: [12, 57]}, q3: {limits_deg: [-57, -6]},
+    q4: {limits_deg: [-75, -50]}, q5: {limits_deg: [-4, 18]}, q6: {limits_deg: [-90, -48]}}
+  elements: [Rz q1, Tz 1400 mm, Tx 150 mm, Rx -90 deg, Rz q2, Rz -90 deg, Tx 600 mm, Rx 180 deg,
+    Rz q3, Tx 200 mm, Rx -90 deg, Rz q4, Tz -640 mm, Rx 90 deg, Rz q5, Rx 90 deg, Rz q6, Tz 200 mm]
+sensor:
+  kind: camera
+  camera: fixed
+  sigma_px: 1
+  image_px: [1280, 960]
+  intrinsics: {fx_px: 1200, fy_px: 1200, cx_px: 640, cy_px: 480, known: false}
+  other_cameras: [{intrinsics: {fx_px: 1200, fy_px: 1200, cx_px: 640, cy_px: 480, known: false}}]
+  board: {points_mm: [[0, 0, 0], [50, 0, 0], [0, 50, 0], [50, 50, 0], [20, 30, 50], [0, 40, 20]]}
+)";
+    const TemporaryFolder folder;
+    const CampaignFile campaign = read_campaign(folder.write("c.yaml", two));
+    EXPECT_FALSE(campaign.has_nominal_base);
+    EXPECT_NO_THROW(check_knowable(campaign));
+    VectorXd clearances(campaign.sensor->target_count());
+    Index in_view = 0;
+    const RowMatrixXd drawn = detail::random_configurations(campaign.robot, 20, 3);
+    for (Index i = 0; i < drawn.rows(); ++i) {
+        campaign.sensor->view_clearances(
+            world_from_flange(campaign, campaign.nominal, drawn.row(i).transpose()),
+            campaign.nominal.sensor, clearances);
+        if (clearances.minCoeff() >= 0) ++in_view;
+    }
+    EXPECT_GT(in_view, 15);
 }
 
 TEST(ReadCamera, TakesHowWellMarkersAreKnown) {

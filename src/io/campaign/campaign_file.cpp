@@ -11,12 +11,14 @@
 #include "io/format/file_kind.hpp"
 #include "io/format/text.hpp"
 #include "keys.hpp"
+#include "measurement/contact.hpp"
 #include "model/complete_model.hpp"
 #include "model/exact_angles.hpp"
 #include "model/joint_limits.hpp"
 #include "model/sampling.hpp"
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/jacobian/identification.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 
 namespace posewise::io {
 namespace {
@@ -77,6 +79,11 @@ void place_within_reach(const std::vector<Index>& reached, Campaign& campaign) {
             world_from_flange(campaign, campaign.nominal, q) *
             targets.position(0, campaign.nominal.sensor);
     }
+}
+
+bool is_fixed_camera(const Sensor& sensor) {
+    const auto* const camera = dynamic_cast<const CameraSensor*>(&sensor);
+    return camera != nullptr && !camera->setup().is_on_flange;
 }
 
 /// `has_stated_errors`: the campaign has no other error parameters than the file says.
@@ -279,6 +286,9 @@ CampaignFile parse(const std::string& content, const std::string& path,
     read_base(map, sensor.is_in_base_frame, campaign);
     campaign = with_robot(campaign, robot.declared);
     if (!sensor.reached.empty()) place_within_reach(sensor.reached, campaign);
+    if (!campaign.has_nominal_base && is_fixed_camera(*campaign.sensor)) {
+        campaign.nominal.world_from_base = detail::base_in_view(campaign);
+    }
     if (robot.error_model == ErrorModel::Complete || robot.error_model == ErrorModel::Offsets) {
         campaign = make_of(map.require("robot"), "no irreducible model was found",
                            [&] { return make_irreducible(campaign, robot.error_model, stop); });
