@@ -75,7 +75,7 @@ instrument's frame: name (P001_T1: target 1 at pose p1), x_mm, y_mm, z_mm, range
 elevation_deg, incidence_deg (to the target's normal, if the cell states it), visible. Points measured
 under these names are read by calibrate -m points.txt --plan plan.json (posewise help measurements).
 A file that ends in .txt has only what is visible, and name, x, y, z, for programs that import no more.
-There are targets of sensors of points only; posewise verify writes those of a plan that exists.
+Sensors of points have targets (column sensor: of which); posewise verify writes those of old plans.
 
 --verify checks what is predicted, before anything is measured: robots are drawn, measured at the poses, calibrated and judged at
 other places, block by block, until what it finds is sure; a limit that is not kept then is said.

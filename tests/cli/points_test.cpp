@@ -371,7 +371,7 @@ TEST_F(Points, TargetsOfAPlanThatIsThereAlready) {
 TEST_F(Points, AreForSensorsOfPointsOnly) {
     write_text("poses.yaml", arm + measured_poses);
     expect_input_error("plan poses.yaml -k 12" + quick + "--targets t.csv -o p.json",
-                       "t.csv: is not written: there is a list of targets only where the sensor "
+                       "t.csv: is not written: there is a list of targets only where a sensor "
                        "measures points, as a laser tracker does (kind: points)\n");
     write_text("p.txt", "P001_T1 1 2 3\n");
     expect_input_error("calibrate poses.yaml -m p.txt",

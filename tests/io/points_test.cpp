@@ -10,6 +10,7 @@
 #include "posewise/core/random.hpp"
 #include "posewise/io/measurements_file.hpp"
 #include "posewise/io/result_files.hpp"
+#include "support/combined.hpp"
 #include "support/slips.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -420,6 +421,73 @@ TEST(TargetsFile, IsAListOfWhatIsVisibleWhereItEndsInTxt) {
     write_targets(folder.path("t.csv"), crane_file(), plan);
     const MeasurementsFile table = read_points(detail::read_file(folder.path("t.csv")));
     EXPECT_EQ(read_back.observations.row(0), table.observations.row(0));
+}
+
+/// A plan of one pose that shows the second target of two, and all that follow.
+Plan planned_for(const CampaignFile& file) {
+    Plan plan;
+    PlannedPose one;
+    one.id = "p1";
+    one.configuration = VectorXd::LinSpaced(file.robot.joint_count(), -0.7, 0.4);
+    for (Index k = 1; k < file.sensor->target_count(); ++k) one.targets.push_back(k);
+    plan.poses = {one};
+    return plan;
+}
+
+std::string targets_of(const CampaignFile& file, const std::string& name = "t.csv") {
+    const TemporaryFolder folder;
+    write_targets(folder.path(name), file, planned_for(file));
+    return detail::read_file(folder.path(name));
+}
+
+CampaignFile file_of(const std::string& text) {
+    const TemporaryFolder folder;
+    return read_campaign(folder.write("c.yaml", text));
+}
+
+TEST(TargetsFile, IsOfTheTrackerAmongSensors) {
+    const std::string alone = targets_of(file_of(testing::tracker_alone));
+    EXPECT_NE(alone.find("P001_T2,"), std::string::npos);
+    const CampaignFile beside_camera = file_of(testing::tracker_and_camera);
+    EXPECT_EQ(targets_of(beside_camera), alone);
+    EXPECT_TRUE(targets_of(beside_camera, "t.txt").starts_with("// name, x, y, z in mm\nP001_T2,"));
+}
+
+TEST(TargetsFile, TellsSeveralTrackersApart) {
+    const std::string frame =
+        "    frame: {position_mm: [100, 0, 0], rpy_deg: [0, 0, 90], known: true}\n";
+    const CampaignFile two =
+        file_of("name: two trackers\n" + testing::combined_arm + testing::tracked_base +
+                "sensors:\n" + testing::tracker_part + testing::tracker_part + frame);
+    std::istringstream lines(targets_of(two));
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_TRUE(line.ends_with(",visible,sensor")) << line;
+    std::vector<Vector3d> points;
+    for (const std::string name : {"P001_T1", "P001_T2", "P001_T1", "P001_T2"}) {
+        std::getline(lines, line);
+        std::vector<std::string> cells;
+        std::istringstream row(line);
+        for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+        ASSERT_EQ(cells.size(), 10U) << line;
+        EXPECT_EQ(cells[0], name);
+        EXPECT_EQ(cells[8], points.empty() ? "no" : "yes");
+        EXPECT_EQ(cells[9], points.size() < 2 ? "1" : "2");
+        points.emplace_back(std::stod(cells[1]), std::stod(cells[2]), std::stod(cells[3]));
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Vector3d& first = points[k];
+        const Vector3d in_second(first.y(), 100 - first.x(), first.z());
+        EXPECT_LT((points[k + 2] - in_second).norm(), 2e-4);
+    }
+    EXPECT_EQ(input_error_of([&] { targets_of(two, "t.txt"); }),
+              "t.txt: is not written: a list that ends in .txt is of one instrument, the campaign "
+              "has 2 that measure points; must end in .csv, whose column 'sensor' tells them "
+              "apart");
+    EXPECT_NE(input_error_of([&] {
+                  targets_of(file_of(testing::two_boards));
+              }).find("only where a sensor measures points"),
+              std::string::npos);
 }
 
 TEST(TargetsFile, HasEachNameOnce) {

@@ -58,8 +58,10 @@ void write_configurations_csv(const std::string& path, const Campaign& campaign,
 /// nominal robot, range_mm, azimuth_deg, elevation_deg, incidence_deg (empty where the cell does
 /// not state the targets' normals) and visible (yes or no). A file that ends in .txt has the
 /// visible ones only, as a list of name, x, y and z in mm without a header, which instruments'
-/// programs import. read_measurements() joins what was measured by these names. Throws InputError
-/// unless the sensor measures points and the campaign states where they are.
+/// programs import. read_measurements() joins what was measured by these names. Of several sensors
+/// those of points have rows, each in its own frame; where they are more than one, a column sensor
+/// has their numbers, and a list is refused. Throws InputError unless a sensor measures points and
+/// the campaign states where they are.
 void write_targets(const std::string& path, const Campaign& campaign, const Plan& plan);
 
 /// The inputs of an estimate: paths, and checksums where they are known.

@@ -6,8 +6,8 @@
 
 namespace posewise::detail {
 
-/// Throws InputError about the file at `path` unless the sensor measures points and the campaign
-/// states where they are.
+/// Throws InputError about the file at `path` unless a sensor measures points and the campaign
+/// states where they are, or if there are several such sensors and the file is a list (.txt).
 void check_has_targets(const std::string& path, const Campaign& campaign);
 
 /// The text of io::write_targets().
