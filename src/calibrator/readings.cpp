@@ -5,8 +5,10 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "core/parallel.hpp"
+#include "core/progress_counter.hpp"
 #include "core/statistics.hpp"
 #include "length_units.hpp"
 #include "posewise/calibrator/estimate.hpp"
@@ -96,18 +98,26 @@ void fit(const Campaign& campaign, const Measurements& measurements, Register re
     reading.misfit = std::hypot(metrics.distance_rms, lever * metrics.orientation_rms);
 }
 
-/// Fits the first `count` readings anew and sorts them.
-void fit(std::vector<FittedReading>& readings, std::size_t count, const Campaign& campaign,
-         const Measurements& measurements, Register registers) {
-    for_each_index(static_cast<Index>(count), [&](Index k) {
-        fit(campaign, measurements, registers, readings[static_cast<std::size_t>(k)]);
-    });
-    std::ranges::stable_sort(readings.begin(),
-                             readings.begin() + static_cast<std::ptrdiff_t>(count), {},
-                             &FittedReading::misfit);
-}
-
 Index changes_of(const FittedReading& reading) { return count_changes(reading.changes); }
+
+/// Registers them with polish, some at a time and the best first: where what is polished leaves far
+/// less already, the others are left as they are. To polish what does not fit takes long.
+void polish(const std::span<FittedReading>& readings, const Campaign& campaign,
+            const Measurements& measurements, ProgressCounter& counter) {
+    constexpr std::size_t at_once = 16;
+    constexpr double hopeless = 300;
+    double best = std::numeric_limits<double>::infinity();
+    for (std::size_t begin = 0; begin < readings.size(); begin += at_once) {
+        const auto some = readings.subspan(begin, std::min(at_once, readings.size() - begin));
+        for_each_index(std::ssize(some), [&](Index k) {
+            FittedReading& reading = some[static_cast<std::size_t>(k)];
+            const bool is_near = begin == 0 || !(reading.misfit > hopeless * best);
+            if (is_near) fit(campaign, measurements, register_base_and_targets, reading);
+            counter.count();
+        });
+        best = std::min(best, std::ranges::min(some, {}, &FittedReading::misfit).misfit);
+    }
+}
 
 /// A dozen corners tell as well as all whether an image is of a board; which they are fits no row
 /// and no column of it.
@@ -135,7 +145,7 @@ Measurements with_few_corners(const Sensor& sensor, Measurements measurements) {
 }  // namespace
 
 FittedReadings fit_readings(const Campaign& campaign, const Measurements& measurements,
-                            Index most_configurations) {
+                            Index most_configurations, const ProgressCallback& progress) {
     const Measurements thinned =
         with_few_corners(*campaign.sensor, thin_out(measurements, most_configurations));
     // What is wrong with the measurements themselves is said once, of the robot as stated.
@@ -152,12 +162,18 @@ FittedReadings fit_readings(const Campaign& campaign, const Measurements& measur
         if (!is_possible(changes, campaign, thinned)) continue;
         readings.push_back({std::move(changes)});
     }
-    fit(readings, readings.size(), campaign, thinned, register_roughly);
     const std::size_t polished = std::min(polished_count, readings.size());
+    ProgressCounter counter(progress, static_cast<Index>(readings.size() + polished));
+    for_each_index(std::ssize(readings), [&](Index k) {
+        fit(campaign, thinned, register_roughly, readings[static_cast<std::size_t>(k)]);
+        counter.count();
+    });
+    std::ranges::stable_sort(readings, {}, &FittedReading::misfit);
     const auto stated = std::ranges::find(readings, 0, changes_of);
-    const auto last = readings.begin() + static_cast<std::ptrdiff_t>(polished) - 1;
-    if (stated > last) std::iter_swap(stated, last);
-    fit(readings, polished, campaign, thinned, register_base_and_targets);
+    std::rotate(readings.begin(), stated, stated + 1);  // polished first
+    const std::span best(readings.begin(), polished);
+    polish(best, campaign, thinned, counter);
+    std::ranges::stable_sort(best, {}, &FittedReading::misfit);
     const auto end = std::ranges::find_if_not(
         readings, [&](const auto& reading) { return fit_alike(reading, readings.front()); });
     std::ranges::stable_sort(readings.begin(), end, {}, changes_of);

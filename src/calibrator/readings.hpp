@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "posewise/core/progress.hpp"
 #include "reading_change.hpp"
 
 namespace posewise::detail {
@@ -25,13 +26,18 @@ struct FittedReadings {
     std::string undetermined;
 };
 
+/// So many configurations tell one reading from another.
+constexpr Index most_registered = 60;
+
 /// All readings that all_readings() lists, but degrees read as rad where no joint is beyond a turn
 /// (mm as m: 20 m). Those of a symmetric robot may fit exactly alike. Each
-/// is registered from nothing, the best 64 and what is stated with polish, with at most
-/// `most_configurations` configurations evenly taken from the measurements (all if those do not
-/// show every target). Throws InputError as register_base_and_targets() does.
+/// is registered from nothing, what is stated and the best 63 others with polish, but those that
+/// are so far off that no polish brings them near the best, with at most `most_configurations`
+/// configurations evenly taken from the measurements (all if those do not show every target).
+/// Throws InputError as register_base_and_targets() does.
 FittedReadings fit_readings(const Campaign& campaign, const Measurements& measurements,
-                            Index most_configurations = 60);
+                            Index most_configurations = most_registered,
+                            const ProgressCallback& progress = {});
 
 /// Whether two fit as well as each other: a symmetric robot's differ by rounding only.
 bool fit_alike(const FittedReading& reading, const FittedReading& other);

@@ -54,6 +54,7 @@ struct InspectArguments {
     std::string tip_link;
     std::string written;
     EarlierArguments earlier;
+    bool progress = false;
 };
 
 void print_head(const io::CampaignFile& file) {
@@ -88,7 +89,7 @@ void print_campaign(const io::CampaignFile& file, const ReadingSearch& readings,
     }
     print_head(file);
     print(format(inspection) + describe_unused_planning(file));
-    if (!readings.tried.empty()) print(detail::describe_readings(file, readings));
+    if (!readings.tried.empty()) print(detail::describe_readings(readings));
 }
 
 bool is_urdf(const InspectArguments& arguments) {
@@ -147,7 +148,9 @@ void inspect(const InspectArguments& arguments, const CommonOptions& common) {
         check_needs_unit(paths, measurements.is_joined);
         check_needs_plan(paths, measurements.is_joined);
         readings = compute_from(paths.measurements, [&] {
-            ReadingSearch search = search_readings(file, measurements);
+            ProgressLine line("trying readings", arguments.progress);
+            ReadingSearch search =
+                search_readings(file, measurements, [&](const Progress& state) { line(state); });
             if (!search.undetermined.empty()) throw InputError(search.undetermined);
             return search;
         });
@@ -186,7 +189,8 @@ void add_inspect(CLI::App& program, const CommonOptions& common) {
         ->check(file_name());
     add_points_options(*command, arguments->paths.plan, arguments->paths.points_unit,
                        "Plan whose poses a list of points was measured at");
-    for (const char* const option : {"--plan", "--points-unit"}) {
+    add_progress_flag(*command, arguments->progress);
+    for (const char* const option : {"--plan", "--points-unit", "--progress"}) {
         command->get_option(option)->needs("--measurements");
     }
     add_from_option(*command, arguments->earlier);

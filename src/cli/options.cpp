@@ -110,4 +110,9 @@ void add_prior_option(CLI::App& command, std::optional<bool>& prior,
         ->excludes(with);
 }
 
+void add_progress_flag(CLI::App& command, bool& is_shown) {
+    command.add_flag("--progress", is_shown,
+                     "Show progress on standard error even if it is no terminal");
+}
+
 }  // namespace posewise::cli

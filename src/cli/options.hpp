@@ -37,4 +37,7 @@ CLI::Option* add_effort_option(CLI::App& command, Index& starts,
 void add_prior_option(CLI::App& command, std::optional<bool>& prior,
                       const std::string& consequence);
 
+/// --progress.
+void add_progress_flag(CLI::App& command, bool& is_shown);
+
 }  // namespace posewise::cli

@@ -275,7 +275,7 @@ void add_plan_search(CLI::App& command, PlanArguments& arguments) {
                      "Refuse a plan with a move for which no free way was found (exit code 1)");
     add_report_option(command, arguments.page);
     add_plot_option(command, arguments.plot, "Draw the poses from the side and from above");
-    add_progress_flag(command, arguments);
+    add_progress_flag(command, arguments.progress);
 }
 
 }  // namespace

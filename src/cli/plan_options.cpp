@@ -62,11 +62,6 @@ void add_search_options(CLI::App& command, RequestArguments& arguments,
         ->check(file_name());
 }
 
-void add_progress_flag(CLI::App& command, RequestArguments& arguments) {
-    command.add_flag("--progress", arguments.progress,
-                     "Show progress on standard error even if it is no terminal");
-}
-
 io::CampaignFile read_planned(const RequestArguments& arguments, const StopSignal& stop) {
     const EarlierArguments& earlier = arguments.earlier;
     PlanSources sources = arguments.request.sources;

@@ -32,7 +32,6 @@ void add_workspace_options(CLI::App& command, PlanRequest& request);
 /// --seed with that help, --time, and -o, --out, by default named as `default_out` says.
 void add_search_options(CLI::App& command, RequestArguments& arguments,
                         const std::string& seed_help, const std::string& default_out);
-void add_progress_flag(CLI::App& command, RequestArguments& arguments);
 
 /// The campaign that poses are planned with, as its file and the command line say.
 io::CampaignFile read_planned(const RequestArguments& arguments, const StopSignal& stop);

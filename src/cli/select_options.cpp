@@ -88,7 +88,7 @@ void add_select_search(CLI::App& command, SelectArguments& arguments) {
                        "Of the random starts and of --random (default: the campaign's, else 1)",
                        "<candidates>.plan.json");
     add_report_option(command, arguments.page);
-    add_progress_flag(command, arguments);
+    add_progress_flag(command, arguments.progress);
     effort->excludes(
         command.add_flag("--relax", arguments.relaxes,
                          "Weights and bound instead of a choice; --out writes them (.csv or "

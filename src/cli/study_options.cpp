@@ -151,8 +151,7 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
         ->check(file_name());
     add_plot_option(command, arguments.plot, "Draw error against pose count");
     add_report_option(command, arguments.page);
-    command.add_flag("--progress", arguments.progress,
-                     "Show progress on standard error even if it is no terminal");
+    add_progress_flag(command, arguments.progress);
 }
 
 }  // namespace posewise::cli

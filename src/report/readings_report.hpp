@@ -2,13 +2,12 @@
 
 #include <string>
 
-#include "posewise/measurement/campaign.hpp"
 #include "posewise/task/doubts.hpp"
 
 namespace posewise::detail {
 
 /// Says whether the measurements fit best as they are stated, and if not, how else; a search that
 /// tried some.
-std::string describe_readings(const Campaign& campaign, const ReadingSearch& search);
+std::string describe_readings(const ReadingSearch& search);
 
 }  // namespace posewise::detail

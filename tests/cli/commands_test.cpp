@@ -209,6 +209,10 @@ TEST_F(Commands, PrintOnlyResultsToAPipe) {
     const Outcome shown = run("study " + input_ + "--random 3 --poses 8 --progress");
     EXPECT_NE(shown.err.find("100 %"), std::string::npos);
     EXPECT_EQ(shown.out, piped.out);
+    const std::string inspected = "inspect " + input_;
+    const Outcome tried = run(inspected + "--progress");
+    EXPECT_NE(tried.err.find("trying readings 100 %"), std::string::npos) << tried.err;
+    EXPECT_EQ(tried.out, run_well(inspected));
 }
 
 TEST_F(Commands, RefuseWhatCannotBeDone) {

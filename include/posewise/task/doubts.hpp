@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -7,6 +8,7 @@
 
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/calibrator/identification.hpp"
+#include "posewise/core/progress.hpp"
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/measurement/sensors.hpp"
@@ -24,6 +26,8 @@ struct ReadingMisfit {
     double orientation_rms = 0;  ///< angles, rad, or 1000 px; 0: none is measured
     const AmountUnits* orientation_units = &angle_units;
 
+    /// Both in one, hypot(m, rad * 1 m).
+    double size() const { return std::hypot(distance_rms, orientation_rms); }
     /// The latter for people: deg or px.
     double orientation_reading() const { return orientation_units->to_reading(orientation_rms); }
 };
@@ -51,6 +55,7 @@ struct BetterReading {
 
 struct ReadingSearch {
     std::vector<TriedReading> tried;  ///< the best fitting first
+    std::string of;                   ///< what was read: "points"; of several sensors, of one
     std::optional<BetterReading> better;
     /// Why base and targets cannot be registered, as in Registration; then none was tried.
     std::string undetermined;
@@ -60,7 +65,8 @@ struct ReadingSearch {
 /// much as the stated one, misses half of the points by less than ten expected errors of the robot,
 /// and has no equally simple rival that fits nearly as well. Throws InputError as
 /// register_base_and_targets() does.
-ReadingSearch search_readings(const Campaign& campaign, const Measurements& measurements);
+ReadingSearch search_readings(const Campaign& campaign, const Measurements& measurements,
+                              const ProgressCallback& progress = {});
 
 /// "they fit clearly better with q2 reversed (1.97 instead of 666 mm RMS): write ...", for
 /// messages.

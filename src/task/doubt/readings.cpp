@@ -44,13 +44,16 @@ double credible_distance(const Campaign& campaign, const Measurements& measureme
 
 }  // namespace
 
-ReadingSearch search_readings(const Campaign& stated, const Measurements& all) {
+ReadingSearch search_readings(const Campaign& stated, const Measurements& all,
+                              const ProgressCallback& progress) {
     // Of several instruments one tells how joints are read, and many take long.
     const detail::PartAlone telling = detail::telling_part(stated, all, stated.nominal);
     const Campaign& campaign = telling.campaign;
     const Measurements& measurements = telling.measured;
     ReadingSearch search;
-    detail::FittedReadings fitted = detail::fit_readings(campaign, measurements);
+    search.of = campaign.sensor->words().readings;
+    detail::FittedReadings fitted =
+        detail::fit_readings(campaign, measurements, detail::most_registered, progress);
     search.undetermined = std::move(fitted.undetermined);
     if (!search.undetermined.empty()) return search;
     const std::vector<FittedReading>& readings = fitted.readings;
