@@ -29,8 +29,9 @@ ReadingSearch of_camera(double px) {
 /// Two registrations of the same are never quite the same.
 TEST(DescribeReadings, TakesASymmetryForNoReasonToDoubt) {
     const std::string text = detail::describe_readings(of_camera(3.9));
-    EXPECT_TRUE(text.starts_with("joint directions: as stated; the registered robot misses the "
-                                 "corners by 4 px"))
+    EXPECT_TRUE(
+        text.starts_with("joint directions: as stated; the registered robot misses the "
+                         "corners by 4 px"))
         << text;
     EXPECT_TRUE(text.ends_with("otherwise by 90 px at least\n")) << text;
 }
