@@ -29,9 +29,11 @@ constexpr double negligible = 1e-26;
 /// A pose with a weighted error below this is reached, m: nothing holds it, nor is it singular.
 constexpr double attained = 1e-6;
 
-/// Weight of a joint sum that is kept at its limit, m per rad or m: of a step's equations these are
-/// exact to rounding, and a sum is beyond by this much at most.
+/// Weight of a joint sum that is kept at its limit, m per rad or m: far above all others, so that
+/// the least squares leave it there.
 constexpr double sum_weight = 1e4;
+
+/// A sum that is beyond its limit by less than this is taken to be at it, rad or m.
 constexpr double sum_rounding = 1e-9;
 
 /// Rotation vector of what R lacks to be the wanted rotation, in the frame both are in.
@@ -95,18 +97,15 @@ class Search {
         }
     }
 
-    /// The first that is not held yet; its limit is where the nominal joints are if these are
-    /// beyond already.
+    /// The first sum beyond its limit that is not held yet. Where the nominal joints are beyond
+    /// already, the limit is where they are.
     std::optional<HeldSum> find_sum_beyond(const VectorXd& q) const {
         for (const JointSum& sum : options_.joint_sums) {
             if (std::ranges::find(held_sums_, &sum, &HeldSum::sum) != held_sums_.end()) continue;
-            const auto amount_at = [&](const VectorXd& joints) {
-                return sum.coefficients.dot(joints.head(sum.coefficients.size()));
-            };
-            const double lower = std::min(sum.limits.lower, amount_at(nominal_));
-            const double upper = std::max(sum.limits.upper, amount_at(nominal_));
-            if (amount_at(q) < lower - sum_rounding) return HeldSum{&sum, lower};
-            if (amount_at(q) > upper + sum_rounding) return HeldSum{&sum, upper};
+            const double lower = std::min(sum.limits.lower, sum.amount(nominal_));
+            const double upper = std::max(sum.limits.upper, sum.amount(nominal_));
+            if (sum.amount(q) < lower - sum_rounding) return HeldSum{&sum, lower};
+            if (sum.amount(q) > upper + sum_rounding) return HeldSum{&sum, upper};
         }
         return std::nullopt;
     }
@@ -189,9 +188,9 @@ class Search {
             change_weight_ * (nominal_ - q);
         for (Index k = 0; k < sums; ++k) {
             const auto& [sum, limit] = held_sums_[static_cast<std::size_t>(k)];
-            const Index joints = sum->coefficients.size();
-            system.J.row(6 + count + k).head(joints) = sum_weight * sum->coefficients.transpose();
-            system.r[6 + count + k] = sum_weight * (limit - sum->coefficients.dot(q.head(joints)));
+            system.J.row(6 + count + k).head(sum->coefficients.size()) =
+                sum_weight * sum->coefficients.transpose();
+            system.r[6 + count + k] = sum_weight * (limit - sum->amount(q));
         }
         return system;
     }

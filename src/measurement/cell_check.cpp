@@ -157,7 +157,7 @@ std::string describe_sums(const Cell& cell, const Chain& robot, const VectorXd& 
     double least = -pose_rounding;
     std::string text;
     for (const JointSum& sum : cell.joint_sums) {
-        const double amount = sum.coefficients.dot(q.head(sum.coefficients.size()));
+        const double amount = sum.amount(q);
         const Interval limits = within_margin(sum, cell, robot);
         const double clearance = interval_clearance(limits, amount);
         if (!(clearance < least)) continue;

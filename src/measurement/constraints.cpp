@@ -191,9 +191,8 @@ double Constraints::limit_clearance(const VectorXd& q) const {
 double Constraints::sum_clearance(const VectorXd& q) const {
     double least = infinity;
     for (const JointSum& sum : cell_.joint_sums) {
-        const double amount = sum.coefficients.dot(q.head(sum.coefficients.size()));
         const Interval limits = detail::within_margin(sum, cell_, robot_);
-        least = std::min(least, interval_clearance(limits, amount));
+        least = std::min(least, interval_clearance(limits, sum.amount(q)));
     }
     return least;
 }

@@ -139,6 +139,16 @@ double needed_clearance(Eigen::Ref<VectorXd> clearances, Index needed) {
     return *nth;
 }
 
+View view_at(const Campaign& campaign, const Parameters& parameters, const VectorXd& q) {
+    const Sensor& sensor = *campaign.sensor;
+    VectorXd clearances(sensor.target_count());
+    sensor.view_clearances(world_from_flange(campaign, parameters, q), parameters.sensor,
+                           clearances);
+    View view{clearances.transpose().array() >= 0};
+    view.clearance = needed_clearance(clearances, sensor.least_in_view());
+    return view;
+}
+
 ViewedPoses viewed_poses(const Campaign& campaign, const Parameters& parameters, Index count,
                          std::uint64_t seed) {
     const Sensor& sensor = *campaign.sensor;
@@ -149,16 +159,12 @@ ViewedPoses viewed_poses(const Campaign& campaign, const Parameters& parameters,
         drawn = random_configurations(campaign.robot, drawn_for_each * count, seed);
         in_view.resize(drawn.rows(), sensor.target_count());
         hidden.clear();
-        VectorXd clearances(sensor.target_count());
         Index found = 0;
         for (Index i = 0; i < drawn.rows() && found < count; ++i) {
-            const Isometry3d flange =
-                world_from_flange(campaign, parameters, drawn.row(i).transpose());
-            sensor.view_clearances(flange, parameters.sensor, clearances);
-            in_view.row(i) = (clearances.array() >= 0).transpose();
-            const double clearance = needed_clearance(clearances, sensor.least_in_view());
-            hidden.emplace_back(std::max(0.0, -clearance), i);
-            if (clearance >= 0) ++found;
+            const View view = view_at(campaign, parameters, drawn.row(i).transpose());
+            in_view.row(i) = view.is_seen;
+            hidden.emplace_back(std::max(0.0, -view.clearance), i);
+            if (view.clearance >= 0) ++found;
         }
         std::ranges::sort(hidden);
         if (found == count) break;

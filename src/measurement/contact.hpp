@@ -41,6 +41,13 @@ std::optional<ShownPoses> touching_poses(const Campaign& campaign, const Paramet
 /// clearances, or the least of fewer. Leaves them in another order.
 double needed_clearance(Eigen::Ref<VectorXd> clearances, Index needed);
 
+/// What a sensor with has_view() sees at a configuration.
+struct View {
+    SeenTargets is_seen;   ///< the targets in view
+    double clearance = 0;  ///< needed_clearance(); negative: fewer are in view than are needed
+};
+View view_at(const Campaign& campaign, const Parameters& parameters, const VectorXd& q);
+
 struct ViewedPoses : ShownPoses {
     Index in_view = 0;  ///< the first so many; the others only come nearest to it
 };

@@ -138,6 +138,9 @@ struct JointSum {
     VectorXd coefficients;  ///< of each joint of the robot
     Interval limits;        ///< rad or m
     double offset = 0;      ///< rad or m; its `name` includes that, its limits do not
+
+    /// What its limits are of at a configuration, whose joints come first; rad or m.
+    double amount(const VectorXd& q) const { return coefficients.dot(q.head(coefficients.size())); }
 };
 
 struct Cell {

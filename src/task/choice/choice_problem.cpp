@@ -247,16 +247,13 @@ ShownPoses shown_tests(ChoiceProblem& problem, const Campaign& campaign,
     const Index count = options.test_poses.rows();
     ShownPoses tests{options.test_poses, all_seen(count, sensor.target_count())};
     if (!sensor.has_view() || count == 0) return tests;
-    VectorXd clearances(sensor.target_count());
     Index kept = 0;
     for (Index i = 0; i < count; ++i) {
         const VectorXd q = options.test_poses.row(i).transpose();
-        sensor.view_clearances(world_from_flange(campaign, problem.parameters, q),
-                               problem.parameters.sensor, clearances);
-        const SeenTargets in_view = (clearances.array() >= 0).transpose();
-        if (needed_clearance(clearances, sensor.least_in_view()) < 0) continue;
+        const View view = view_at(campaign, problem.parameters, q);
+        if (view.clearance < 0) continue;
         tests.configurations.row(kept) = q.transpose();
-        tests.is_seen.row(kept++) = in_view;
+        tests.is_seen.row(kept++) = view.is_seen;
     }
     if (kept == count) return tests;
     const std::string& name = options.sources.test_poses;
