@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "campaign_sections.hpp"
@@ -204,41 +203,6 @@ void read_fixed(const YamlValue& value, const Chain& robot, Cell& cell) {
     }
 }
 
-/// Throws InputError for a word that names no joint of the robot, nor a unit behind a number: a
-/// slip in the name of a controller's joint, or a sum of these.
-void check_limited_words(const YamlEntry& entry, const std::vector<std::string>& model,
-                         const std::vector<std::string>& shown) {
-    const std::string_view key = entry.key;
-    for (std::size_t begin = 0; begin < key.size();) {
-        std::size_t end = begin;
-        while (end < key.size() && is_identifier('_' + std::string(1, key[end]))) ++end;
-        const std::string word(key.substr(begin, end - begin));
-        FileLocation place = entry.key_location;
-        place.column += static_cast<long>(begin);
-        begin = end + 1;
-        const auto is_in = [&](const auto& names) {
-            return std::ranges::find(names, word) != names.end();
-        };
-        if (!is_identifier(word) || is_in(model) || find_unit(word) != nullptr) continue;
-        if (is_in(shown)) {
-            throw input_error_at(place, quote(word) +
-                                            " is a joint of the controller; must stand alone, or "
-                                            "the sum must be of the robot's joints: " +
-                                            list_words(model));
-        }
-        std::vector<std::string> known = shown;
-        known.insert(known.end(), model.begin(), model.end());
-        const auto upper = [](unsigned char letter) { return std::toupper(letter); };
-        const auto alike = std::ranges::find_if(known, [&](const std::string& name) {
-            return std::ranges::equal(name, word, {}, upper, upper);
-        });
-        throw input_error_at(place,
-                             quote(word) + " is no joint of the robot or of its controller; " +
-                                 (alike != known.end() ? "did you mean " + quote(*alike) + "?"
-                                                       : "must be " + list_words(known)));
-    }
-}
-
 /// What a limit is of: a sum of the robot's joints, or a joint of the controller, which is one.
 Element parse_limited(const YamlEntry& entry, bool turns, const Chain& robot,
                       const ControllerJoints& controller) {
@@ -247,9 +211,9 @@ Element parse_limited(const YamlEntry& entry, bool turns, const Chain& robot,
     const auto found = std::find(shown.begin(), shown.end(), trim(entry.key));
     const Motion motion = turns ? Motion::Rotation : Motion::Translation;
     const bool is_same = controller.is_identity() && shown == names;
-    if (found == shown.end() && !is_same) check_limited_words(entry, names, shown);
     if (found == shown.end() || is_same) {
-        return ElementParser(names).parse_joint_sum(entry.key, entry.key_location, motion);
+        const ElementParser parser(names, is_same ? std::vector<std::string>() : shown);
+        return parser.parse_joint_sum(entry.key, entry.key_location, motion);
     }
     if (std::find(names.begin(), names.end(), *found) != names.end()) {
         throw input_error_at(entry.key_location,

@@ -1,6 +1,7 @@
 #include "element_notation.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -111,8 +112,11 @@ bool is_kind(const std::string& word) {
 
 }  // namespace
 
-ElementParser::ElementParser(std::vector<std::string> joint_names)
-    : joint_names_(std::move(joint_names)), driven_(joint_names_.size()) {}
+ElementParser::ElementParser(std::vector<std::string> joint_names,
+                             std::vector<std::string> shown_names)
+    : joint_names_(std::move(joint_names)),
+      shown_names_(std::move(shown_names)),
+      driven_(joint_names_.size()) {}
 
 Element ElementParser::parse(std::string_view text, const FileLocation& start) {
     Cursor cursor(text, start);
@@ -248,14 +252,32 @@ void ElementParser::add_nominal(Cursor& cursor, double number, std::size_t start
     }
 }
 
+/// Robot's and controller's joints are named alike: none is guessed, but for capitals.
+std::string ElementParser::describe_unknown_joint(const std::string& name) const {
+    if (shown_names_.empty()) return " is no joint of the robot; " + suggest(name, joint_names_);
+    if (std::ranges::find(shown_names_, name) != shown_names_.end()) {
+        return " is a joint of the controller; must stand alone, or the sum must be of the robot's "
+               "joints: " +
+               list_words(joint_names_);
+    }
+    std::vector<std::string> known = shown_names_;
+    known.insert(known.end(), joint_names_.begin(), joint_names_.end());
+    const auto upper = [](unsigned char letter) { return std::toupper(letter); };
+    const auto alike = std::ranges::find_if(known, [&](const std::string& one) {
+        return std::ranges::equal(one, name, {}, upper, upper);
+    });
+    return " is no joint of the robot or of its controller; " +
+           (alike != known.end() ? "did you mean " + quote(*alike) + "?"
+                                 : "must be " + list_words(known));
+}
+
 void ElementParser::add_joint(Cursor& cursor, double coefficient, Sum& sum) const {
     cursor.skip_blanks();
     const std::size_t position = cursor.position();
     const std::string name = cursor.read_word();
     const auto found = std::find(joint_names_.begin(), joint_names_.end(), name);
     if (found == joint_names_.end()) {
-        throw cursor.error(
-            position, quote(name) + " is no joint of the robot; " + suggest(name, joint_names_));
+        throw cursor.error(position, quote(name) + describe_unknown_joint(name));
     }
     const Index joint = found - joint_names_.begin();
     const auto same = [joint](const JointTerm& term) { return term.joint == joint; };

@@ -14,8 +14,10 @@ namespace posewise::detail {
 /// Reads a robot's elements, one line of text each, in order (notation: see read_campaign()).
 class ElementParser {
   public:
-    /// `joint_names` in the order of the robot's joints.
-    explicit ElementParser(std::vector<std::string> joint_names);
+    /// `joint_names` in the order of the robot's joints. `shown_names`: those of the controller's
+    /// joints where a name may be meant as one of them, for messages.
+    explicit ElementParser(std::vector<std::string> joint_names,
+                           std::vector<std::string> shown_names = {});
 
     /// The element in `text`, whose first character stands at `start`. Throws InputError that
     /// points at the character where the notation, a unit, a joint or a name goes wrong.
@@ -48,7 +50,10 @@ class ElementParser {
     JointFunction parse_function(Cursor& cursor) const;
     void note_driven(const Element& element);
 
+    std::string describe_unknown_joint(const std::string& name) const;
+
     std::vector<std::string> joint_names_;
+    std::vector<std::string> shown_names_;
     std::vector<std::optional<Motion>> driven_;
     std::map<std::string, long> parameter_lines_;
 };
