@@ -57,6 +57,13 @@ Vector3d position(std::size_t k) {
     return {1000 + x, 200.5 - 3 * x, -30.25 * x};
 }
 
+std::vector<std::string> cells_of(const std::string& line) {
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    return cells;
+}
+
 /// A list of all points, each as `row` writes it.
 template <class Row>
 std::string list_of(const std::vector<std::size_t>& order, const Row& row) {
@@ -466,9 +473,7 @@ TEST(TargetsFile, TellsSeveralTrackersApart) {
     std::vector<Vector3d> points;
     for (const std::string name : {"P001_T1", "P001_T2", "P001_T1", "P001_T2"}) {
         std::getline(lines, line);
-        std::vector<std::string> cells;
-        std::istringstream row(line);
-        for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+        const std::vector<std::string> cells = cells_of(line);
         ASSERT_EQ(cells.size(), 10U) << line;
         EXPECT_EQ(cells[0], name);
         EXPECT_EQ(cells[8], points.empty() ? "no" : "yes");
@@ -517,9 +522,7 @@ TEST(TargetsFile, TellsRangeAnglesAndSight) {
     EXPECT_EQ(line, "name,x_mm,y_mm,z_mm,range_mm,azimuth_deg,elevation_deg,incidence_deg,visible");
     for (const std::string name : {"P001_T1", "P001_T2", "P002_T1", "P002_T2"}) {
         std::getline(lines, line);
-        std::vector<std::string> cells;
-        std::istringstream row(line);
-        for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+        const std::vector<std::string> cells = cells_of(line);
         ASSERT_EQ(cells.size(), 9U) << line;
         EXPECT_EQ(cells[0], name);
         EXPECT_EQ(cells[8], name == "P002_T1" ? "no" : "yes");

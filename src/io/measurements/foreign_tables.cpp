@@ -59,22 +59,9 @@ bool has_robodk_joints(const std::vector<std::string_view>& titles) {
     return true;
 }
 
-/// Throws InputError for what was a table of RoboDK before columns or its header were lost.
-void check_robodk_columns(const CsvReader& csv, bool has_header, std::size_t count) {
-    const bool is_whole = count == robodk_poses || count == robodk_points;
-    if (has_header && !is_whole) {
-        throw input_error_at(csv.locate(0),
-                             fmt::format("row has {} fields behind a header with J1 to J6; a table "
-                                         "of RoboDK must have {} (points) or {} (poses)",
-                                         count, robodk_points, robodk_poses));
-    }
-    if (!has_header && is_whole) {
-        throw input_error_at(
-            csv.locate(0), fmt::format("{} numbers without a header; a table of RoboDK must begin "
-                                       "with one, J1,J2,J3,J4,J5,J6,X,Y,Z,..., and another table "
-                                       "with the column config",
-                                       count));
-    }
+bool has_robodk_width(const CsvReader& csv) {
+    const std::size_t count = csv.fields().size();
+    return count == robodk_poses || count == robodk_points;
 }
 
 /// Orientations as columns may state them.
@@ -98,7 +85,7 @@ Matrix3d rotation(const Vector3d& angles, const AngleReading& reading) {
     return (reading.is_xyz ? x * y * z : z * y * x).toRotationMatrix();
 }
 
-/// A row of the file in SI units, but for angles of RoboDK's.
+/// A row of the file. Lengths and joints are in SI units, angles of RoboDK as they stand there.
 struct Row {
     VectorXd joints;
     Vector3d position;
@@ -169,7 +156,7 @@ class TableReader {
         check_unit();
     }
 
-    /// Of poses, which are of one tool.
+    /// Throws InputError where measured poses are of another tool than those before.
     void check_tool(const Row& row) const {
         if (pose_ == nullptr || rows_.empty()) return;
         constexpr double rounding = 1e-6;  // m or the file's unit of angles
@@ -183,8 +170,8 @@ class TableReader {
                                             ", the first line measured; must be one tool");
     }
 
-    /// Throws InputError for positions in m: nothing is measured that near to where it is measured
-    /// from.
+    /// Throws InputError for positions that must be in m: taken as mm they are too near to the
+    /// instrument.
     void check_unit() const {
         constexpr double nearest = 20 * mm;
         const double farthest = std::ranges::max(rows_, {}, [](const Row& row) {
@@ -436,23 +423,28 @@ ForeignTable foreign_table(const std::string& path, const std::string& content,
         }
     };
     if (!next_row()) return ForeignTable::None;
-    const Index joints = campaign.robot.joint_count();
+    const auto joints = static_cast<std::size_t>(campaign.robot.joint_count());
     const bool may_be_robodk = joints == robodk_joints;
     if (std::ranges::all_of(csv.fields(), is_number)) {
-        const std::size_t count = csv.fields().size();
-        if (count == static_cast<std::size_t>(joints) + matrix_size) return ForeignTable::Pybotics;
-        if (may_be_robodk) check_robodk_columns(csv, false, count);
-        return ForeignTable::None;
+        if (csv.fields().size() == joints + matrix_size) return ForeignTable::Pybotics;
+        if (!may_be_robodk || !has_robodk_width(csv)) return ForeignTable::None;
+        throw input_error_at(
+            csv.locate(0), fmt::format("{} numbers without a header; a table of RoboDK must begin "
+                                       "with one, J1,J2,J3,J4,J5,J6,X,Y,Z,..., and another table "
+                                       "with the column config",
+                                       csv.fields().size()));
     }
     const bool is_named = has_robodk_joints(csv.fields());
     if (!may_be_robodk || !may_be_robodk_header(csv.fields()) || !next_row() ||
         !std::ranges::all_of(csv.fields(), is_number)) {
         return ForeignTable::None;
     }
-    const std::size_t count = csv.fields().size();
-    if (is_named) check_robodk_columns(csv, true, count);
-    return count == robodk_poses || count == robodk_points ? ForeignTable::RoboDk
-                                                           : ForeignTable::None;
+    if (has_robodk_width(csv)) return ForeignTable::RoboDk;
+    if (!is_named) return ForeignTable::None;
+    throw input_error_at(csv.locate(0),
+                         fmt::format("row has {} fields behind a header with J1 to J6; a table of "
+                                     "RoboDK must have {} (points) or {} (poses)",
+                                     csv.fields().size(), robodk_points, robodk_poses));
 }
 
 io::MeasurementsFile read_foreign_table(const std::string& path, std::string content,

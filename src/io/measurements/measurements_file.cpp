@@ -33,10 +33,12 @@ Configurations read_matlab(const std::string& path, const CampaignFile& file) {
 
 /// Throws InputError where a table has joints of the model in place of the controller's, or the
 /// other way round: their names are alike, their angles are not.
-void check_joint_columns(const detail::CsvReader& header, const CampaignFile& file) {
-    std::vector<std::string> model;
-    for (const Joint& joint : file.robot.joints()) model.push_back(joint.name);
+void check_joint_columns(const std::string& path, const std::string& content,
+                         const std::vector<std::string>& model, const CampaignFile& file) {
     const std::vector<std::string>& shown = file.controller.names();
+    if (shown == model) return;
+    detail::CsvReader header(path, content, detail::CsvStyle::Table);
+    if (!header.next_row()) return;
     const bool wants_shown = file.has_controller_columns;
     const auto& wanted = wants_shown ? shown : model;
     const auto& other = wants_shown ? model : shown;
@@ -84,8 +86,7 @@ MeasurementsFile read_as_stated(const std::string& path, const CampaignFile& fil
     if (detail::is_points_list(path, content, joints, points.plan != nullptr)) {
         return detail::read_planned_points(path, std::move(content), file, points);
     }
-    detail::CsvReader header(path, content, detail::CsvStyle::Table);
-    if (header.next_row()) check_joint_columns(header, file);
+    check_joint_columns(path, content, joints, file);
     return detail::read_measurements_table(path, std::move(content), table);
 }
 

@@ -289,9 +289,7 @@ std::vector<io::ProgramStop> read_fanuc_module(const std::string& path,
             stops.move(line, found->second);
         } else if (const std::string part = called_fanuc_part(path, line);
                    has_parts && !part.empty()) {
-            stops.call(line, read_part(line, part, [&](const std::string& other) {
-                           return read_fanuc_module(other, joints, false);
-                       }));
+            stops.call(line, read_part(line, part, joints, &read_fanuc_module));
         } else if (!line.begins_with("//")) {
             check_fanuc_statement(line);
             stops.pass(line);

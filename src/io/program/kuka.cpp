@@ -15,7 +15,7 @@ namespace posewise::detail {
 namespace {
 
 constexpr std::size_t most_kuka_lines = 1400;
-constexpr std::size_t other_kuka_lines = 20;  // of a program's begin and end
+constexpr std::size_t other_kuka_lines = 20;  // those before the first stop, and END
 
 constexpr std::string_view krl_header = "&ACCESS RVP\n&REL 1\n";
 
@@ -150,9 +150,7 @@ std::vector<io::ProgramStop> read_kuka_module(const std::string& path,
             stops.note(line.text.substr(1));
         } else if (const std::string part = called_kuka_part(path, line);
                    has_parts && !part.empty()) {
-            stops.call(line, read_part(line, part, [&](const std::string& other) {
-                           return read_kuka_module(other, joints, false);
-                       }));
+            stops.call(line, read_part(line, part, joints, &read_kuka_module));
         } else if (line.begins_with("PTP") && line.has("$AXIS_ACT")) {
             continue;
         } else if (line.begins_with("PTP_REL")) {

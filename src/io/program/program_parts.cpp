@@ -48,11 +48,10 @@ std::string part_path(const std::string& path, std::string_view called) {
     return sibling_of(path, stem + std::string(called.substr(stem.size())) + ending_of(path));
 }
 
-std::vector<io::ProgramStop> read_part(
-    const TextLine& call, const std::string& part,
-    const std::function<std::vector<io::ProgramStop>(const std::string& path)>& read) {
+std::vector<io::ProgramStop> read_part(const TextLine& call, const std::string& part,
+                                       const ControllerJoints& joints, ReadModule read) {
     try {
-        return read(part);
+        return read(part, joints, false);
     } catch (const InputError& problem) {
         throw call.error(fmt::format("calls a program that cannot be used: {}", problem.what()));
     }

@@ -16,8 +16,8 @@
 namespace posewise::detail {
 namespace {
 
-constexpr std::size_t most_yaskawa_lines = 9999;  // of a job's steps
-constexpr std::size_t other_yaskawa_lines = 3;    // before the first stop, and END
+constexpr std::size_t most_yaskawa_lines = 9999;
+constexpr std::size_t other_yaskawa_lines = 3;  // before the first stop, and END
 constexpr double most_pulses = 2147483647;
 
 std::string pulses_text(const ControllerJoints& joints, const VectorXd& values) {
@@ -178,9 +178,7 @@ std::vector<io::ProgramStop> read_yaskawa_job(const std::string& path,
             stops.move(line, degrees_of(found->second, joints));
         } else if (const std::string part = called_yaskawa_part(path, line);
                    has_parts && !part.empty()) {
-            stops.call(line, read_part(line, part, [&](const std::string& other) {
-                           return read_yaskawa_job(other, joints, false);
-                       }));
+            stops.call(line, read_part(line, part, joints, &read_yaskawa_job));
         } else {
             if (line.begins_with("TIMER") && equals != std::string_view::npos) {
                 check_time(line, line.text, line.text.substr(equals + 1));
