@@ -26,7 +26,7 @@ struct FittedReadings {
     std::string undetermined;
 };
 
-/// So many configurations tell one reading from another.
+/// This many configurations are enough to tell one reading from another.
 constexpr Index most_registered = 60;
 
 /// All readings that all_readings() lists, but degrees read as rad where no joint is beyond a turn

@@ -4,8 +4,8 @@
 
 namespace posewise::detail {
 
-/// Of columns of residuals() the length of each row, in the rows' order; what a target does not
-/// have (NaN) counts 0, and rows of targets that have none of them are left out.
+/// The length of each row of some columns of residuals(), in the rows' order. NaN is what a target
+/// does not have: it counts as 0, and rows of nothing else are left out.
 VectorXd residual_lengths(const Eigen::Ref<const RowMatrixXd>& residuals);
 
 }  // namespace posewise::detail

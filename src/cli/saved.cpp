@@ -42,8 +42,8 @@ bool try_to_show(const std::string& path, const char* what, const std::function<
     }
 }
 
-/// A file that an estimate names as it was typed: seen from the estimate's folder, so that a file
-/// of the same name where the program runs is not taken for it; else from here.
+/// The file that an estimate names, by the path that was typed when it was made. It is looked for
+/// in the estimate's folder first: another of that name may stand in the current one.
 std::string find_file(const std::string& typed, const std::string& estimate) {
     std::error_code ignored;
     const fs::path beside = fs::path(estimate).parent_path() / typed;

@@ -124,8 +124,8 @@ void write_measurements_csv(const std::string& path, const Campaign& campaign,
                             const Measurements& measurements,
                             const std::vector<std::string>& comment_lines = {});
 
-/// The same with the joints that read_measurements() takes: the controller's, where the campaign
-/// says so.
+/// Writes such a CSV file for read_measurements(): it has the controller's joints where
+/// CampaignFile::has_controller_columns says that measurements have them.
 void write_measurements(const std::string& path, const CampaignFile& file,
                         const Measurements& measurements,
                         const std::vector<std::string>& comment_lines = {});

@@ -32,7 +32,7 @@ struct Tracker {
     VectorXd unknowns;
     Isometry3d own_from_world;
     Index first_target = 0;
-    Index number = 1;  ///< of the sensor
+    Index number = 1;  ///< by which the file calls the sensor, from 1
 };
 
 std::vector<Tracker> trackers_of(const Campaign& campaign) {
