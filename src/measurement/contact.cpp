@@ -203,7 +203,7 @@ Isometry3d base_in_view(const Campaign& campaign) {
     }
     RandomStream directions(seed);
     Isometry3d best = Isometry3d::Identity();
-    double best_share = -1;
+    Index least_hidden = pose_count * sensor.target_count() + 1;
     VectorXd clearances(sensor.target_count());
     for (Index k = 0; k < direction_count; ++k) {
         const Eigen::Quaterniond turn(directions.normal(), directions.normal(), directions.normal(),
@@ -211,13 +211,14 @@ Isometry3d base_in_view(const Campaign& campaign) {
         for (const double distance : {1.5 * reach, 3 * reach, 6 * reach}) {
             const Isometry3d base = Eigen::Translation3d(0, 0, distance) * turn.normalized() *
                                     Eigen::Translation3d(-middle);
-            double share = 0;
+            Index hidden = 0;
             for (const Isometry3d& flange : flanges) {
                 sensor.view_clearances(base * flange, campaign.nominal.sensor, clearances);
-                share += static_cast<double>((clearances.array() >= 0).count());
+                hidden += sensor.target_count() - (clearances.array() >= 0).count();
+                if (hidden >= least_hidden) break;
             }
-            if (share <= best_share) continue;
-            best_share = share;
+            if (hidden >= least_hidden) continue;
+            least_hidden = hidden;
             best = base;
         }
     }
