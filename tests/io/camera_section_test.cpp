@@ -62,7 +62,7 @@ TEST(ReadCamera, TakesWhatIsStated) {
 }
 
 TEST(ReadCamera, KnowsIntrinsicsWithDeviations) {
-    const std::string stated = "known: [cx, cy], deviations: {fx_px: 2, cx_px: 3, k1: 0.01}";
+    const std::string stated = "known: [cy], deviations: {fx_px: 2, cx_px: 3, k1: 0.01}";
     const Campaign campaign = with_camera(replaced(camera, "known: [cx, cy]", stated));
     const CameraSetup& setup = setup_of(campaign);
     EXPECT_EQ(setup.is_known,
@@ -84,6 +84,36 @@ TEST(ReadCamera, KnowsIntrinsicsWithDeviations) {
               std::string::npos);
     EXPECT_NE(error("deviations: {fx_px: 0}").find("must be above 0"), std::string::npos);
     EXPECT_NE(error("deviations: {k3: 1}").find("is of no intrinsic parameter"), std::string::npos);
+    for (const std::string known : {"[fx, cx]", "true"}) {
+        EXPECT_NE(error("known: " + known + ", deviations: {k1: 1, fx_px: 2}")
+                      .find(known == "true" ? "deviations.k1 is stated beside 'known', by which k1"
+                                            : "deviations.fx_px is stated beside 'known', by which "
+                                              "fx is exact; must stand in one of them"),
+                  std::string::npos)
+            << error("known: " + known + ", deviations: {k1: 1, fx_px: 2}");
+    }
+    EXPECT_NE(error("deviations: {}").find("is empty; must state one"), std::string::npos);
+    const Campaign others =
+        with_camera(replaced(camera, "known: [cx, cy]", "known: false, deviations: {cx_px: 3}"));
+    EXPECT_EQ(setup_of(others).is_known,
+              (std::vector<bool>{false, false, true, false, false, false, false, false}));
+}
+
+/// The image of 1280 x 960 px reaches 0.4 to the side; there it would turn back with -3.
+TEST(ReadCamera, RefusesALensThatFoldsWithinTheImage) {
+    const auto error = [](const std::string& coefficients) {
+        return input_error_of(
+            [&] { with_camera(replaced(camera, "[-0.1, 0.02, 0, 0]", coefficients)); });
+    };
+    const std::string found = error("[-3, 0, 0, 0]");
+    EXPECT_TRUE(found.starts_with("c.yaml:")) << found;
+    EXPECT_NE(found.find("sensor.intrinsics.distortion folds the image onto itself from 26"),
+              std::string::npos)
+        << found;
+    EXPECT_NE(found.find("within the image, whose nearest edge is 470 px away"), std::string::npos);
+    EXPECT_EQ(error("[-0.3, 0, 0, 0]"), "no error");
+    const std::string wide = replaced(camera, "  image_px: [1280, 960]\n", "");
+    EXPECT_NO_THROW(with_camera(replaced(wide, "[-0.1, 0.02, 0, 0]", "[-3, 0, 0, 0]")));
 }
 
 TEST(ReadCamera, TakesHowNoiseGrowsAndHowFarItSees) {
@@ -142,15 +172,25 @@ TEST(ReadCamera, SaysWhatIsWrong) {
     expect_error("columns: 3", "columns: 1", "must be from 2");
     expect_error("columns: 3, rows: 2, ", "", "must have either columns");
     expect_error("most_tilt_deg: 45", "most_tilt_deg: 100", "must be");
-    expect_error("least_corners: 5", "least_corners: 7", "from 1 to the board's 6 corners");
+    expect_error("least_corners: 5", "least_corners: 7",
+                 "must be from 1 to 6, the board's corners");
     expect_error("front: +z", "front: up", "must be -z or +z");
     expect_error("front: +z", "nearest_mm: 900, farthest_mm: 250", "not beyond nearest_mm");
-    expect_error("front: +z", "nearest_mm: 0", "must be positive");
+    expect_error("front: +z", "nearest_mm: -1", "must be zero or positive");
+    EXPECT_NO_THROW(with_camera(replaced(camera, "front: +z", "nearest_mm: 0")));
+    expect_error("least_corners: 5", "least_corners: -5", "must be a whole number from 1 to 6");
+    expect_error("columns: 3", "columns: x", "must be a whole number from 2 to 1000");
+    expect_error("square_mm: 25", "square_mm: 25, first_point: 9223372036854775808",
+                 "must be from 0 to 1");
+    expect_error("square_mm: 25", "square_mm: 1e-9",
+                 "square_mm is '1e-9'; must be from 0.01 to 10000 mm, as what can be printed");
     const std::string sigma = "sigma_px: 0.25";
     expect_error(sigma, sigma + "\n  noise: {focus_mm: 600}", "both focus_mm and aperture_mm");
     expect_error(sigma, sigma + "\n  noise: {tilt: 9}", "noise.tilt is 9, must be from 0 to 4");
     expect_error(sigma, sigma + "\n  noise: {range_um: 9}", "unknown key 'range_um'");
-    expect_error("[1280, 960]", "[1280, 0]", "at least 1 px");
+    expect_error(sigma, sigma + "\n  noise: {}", "noise is empty; must state tilt, or focus_mm");
+    expect_error("[1280, 960]", "[1280, 0]", "a whole number of pixels, at least 1");
+    expect_error("[1280, 960]", "[1280.5, 960]", "a whole number of pixels, at least 1");
     expect_error("{columns: 3, rows: 2, square_mm: 25}",
                  "{points_mm: [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0]]}",
                  "in one line");
@@ -170,6 +210,16 @@ CameraSetup before(const std::string& board, const std::string& content = "") {
                                    "sensor: {kind: camera, camera: fixed, sigma_px: 0.3,\n"
                                    "  intrinsics: {known: false}, board: " +
                                    board + "}\n")));
+}
+
+TEST(ReadBoard, SaysThatAFileIsEmptyWhereItIsNamed) {
+    for (const std::string empty : {"", "# nothing\n\n", "%YAML:1.0\n---\n"}) {
+        const std::string error = input_error_of([&] { before("{file: board.yaml}", empty); });
+        EXPECT_TRUE(error.starts_with("c.yaml:")) << error;
+        EXPECT_NE(error.find("sensor.board.file cannot be used: "), std::string::npos) << error;
+        EXPECT_NE(error.find("board.yaml is empty; must describe what"), std::string::npos)
+            << error;
+    }
 }
 
 void expect_places(const CameraSetup& setup, std::size_t count,

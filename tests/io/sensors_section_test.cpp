@@ -153,13 +153,17 @@ TEST(ReadSensors, SaysWhatIsWrongOfTheSameCamera) {
     expect_messages(
         two_boards,
         {{"same_camera: 1", "same_camera: 2",
-          "[...]sensors[2].same_camera is 2; must be the number of a sensor of kind camera[...]"},
+          "[...]sensors[2].same_camera is 2; must be from 1 to 1, the number of a sensor before "
+          "this one"},
+         {"same_camera: 1", "same_camera: -1",
+          "[...]sensors[2].same_camera is '-1'; must be a whole number from 1 to 1, the number of "
+          "a sensor before this one"},
          {"same_camera: 1", "same_camera: 1\n    sigma_px: 0.3",
           "[...]sensors[2].sigma_px is that of the same camera, stated before; must be left[...]"},
          {"same_camera: 1", "same_camera: 1\n    place: {position_mm: [0, 0, 0]}",
           "[...]sensors[2].place is that of the same camera, stated before; must be left[...]"},
          {"    sigma_px", "    same_camera: 1\n    sigma_px",
-          "[...]sensors[1].same_camera is 1; must be the number of a sensor of kind[...]"}},
+          "[...]sensors[1].same_camera is of the first sensor; must be left out"}},
         error, "c.yaml:");
     const std::string tracker = replaced(two_trackers, "kind: points\n    sigma_mm: 0.1",
                                          "kind: camera\n    same_camera: 1");

@@ -27,11 +27,18 @@ constexpr std::array<std::pair<std::string_view, Pattern>, 4> kinds{
      {"points", Pattern::Points}}};
 
 Index read_count(const YamlValue& value, Index least) {
-    const std::uint64_t count = value.natural_number();
-    if (count >= static_cast<std::uint64_t>(least) && count <= most_corners) {
-        return static_cast<Index>(count);
-    }
-    throw value.error(fmt::format("is {}; must be from {} to {}", count, least, most_corners));
+    return static_cast<Index>(
+        value.natural_number(static_cast<std::uint64_t>(least), most_corners));
+}
+
+/// Side of a square, marker or tag.
+double read_side(const YamlMeasure& measure) {
+    constexpr double shortest = 1e-5;  // m: no printer makes a smaller one
+    const double side = read_positive(measure, false, longest);
+    if (side >= shortest) return side;
+    throw measure.value.error(fmt::format(
+        "is {}; must be from {:g} to {:g} {}, as what can be printed", quote(measure.value.text()),
+        measure.unit->from_si(shortest), measure.unit->from_si(longest), measure.unit->name));
 }
 
 /// `count` places, `step` apart.
@@ -102,13 +109,13 @@ std::vector<Vector3d> read_points(const YamlMeasure& points) {
 void read_squares(const YamlValue& value, const YamlMap& board, CameraSetup& setup) {
     BoardPattern& pattern = setup.pattern;
     const YamlMeasure stated = board.require_measure("square");
-    const double square = read_positive(stated, false, longest);
+    const double square = read_side(stated);
     if (pattern.kind == Pattern::Chessboard) {
         setup.corners = grid(value, evenly(pattern.columns, square), evenly(pattern.rows, square));
         return;
     }
     const YamlMeasure marker = board.require_measure("marker");
-    pattern.marker = read_positive(marker, false, longest);
+    pattern.marker = read_side(marker);
     if (!(pattern.marker < square)) {
         throw marker.value.error("is " + quote(marker.value.text()) +
                                  "; must be smaller than the squares");
@@ -150,8 +157,7 @@ void read_pattern(const YamlValue& value, std::string_view kind, CameraSetup& se
     pattern.columns = read_count(board.require("columns"), least);
     pattern.rows = read_count(board.require("rows"), least);
     if (pattern.kind != Pattern::Aprilgrid) return read_squares(value, board, setup);
-    set_aprilgrid(value, read_positive(board.require_measure("tag"), false, longest),
-                  board.require("spacing"), setup);
+    set_aprilgrid(value, read_side(board.require_measure("tag")), board.require("spacing"), setup);
 }
 
 /// A target of Kalibr; lengths are in m.
@@ -164,7 +170,7 @@ void read_kalibr(const YamlValue& file, const YamlValue& type, CameraSetup& setu
         return require_of(file, key, "which the board needs");
     };
     const auto length = [&](std::string_view key) {
-        return read_positive({require(key), find_unit("m")}, false, longest);
+        return read_side({require(key), find_unit("m")});
     };
     BoardPattern& pattern = setup.pattern;
     pattern.kind = is_grid ? Pattern::Aprilgrid : Pattern::Chessboard;
@@ -211,10 +217,7 @@ void read_corners(const YamlMap& board, CameraSetup& setup) {
     }
     const auto first = board.find("first_point");
     if (!first) return;
-    setup.first_corner = static_cast<Index>(first->natural_number());
-    if (setup.first_corner > 1) {
-        throw first->error(fmt::format("is {}; must be 0 or 1", setup.first_corner));
-    }
+    setup.first_corner = static_cast<Index>(first->natural_number(0, 1));
 }
 
 void read_stated(const YamlValue& value, CameraSetup& setup) {
@@ -301,7 +304,7 @@ void read_opencv(const YamlValue& value, const YamlValue& asked_by, const Opencv
             "has squares of {:g}, in a unit that OpenCV does not write; must state square_mm, too",
             found.square));
     }
-    const double square = read_positive(*stated, false, longest);
+    const double square = read_side(*stated);
     const auto agrees = [&](double unit) {
         return std::abs(found.square * unit - square) <= 1e-6 * square;
     };

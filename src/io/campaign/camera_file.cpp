@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 
 #include "io/format/atomic_file.hpp"
 #include "io/format/text.hpp"
@@ -114,6 +115,18 @@ std::string without_opencv_words(std::string content) {
     return content;
 }
 
+/// Nothing but comments, ends and beginnings of YAML's documents, and blanks.
+bool is_blank(const std::string& content) {
+    std::istringstream lines(content);
+    for (std::string line; std::getline(lines, line);) {
+        const auto text = trim(line);
+        const bool is_mark = text.starts_with('#') || text.starts_with('%') || text == "---" ||
+                             text == "..." || text == "\xEF\xBB\xBF";
+        if (!text.empty() && !is_mark) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 NamedFile read_named_file(const YamlValue& asked_by) {
@@ -124,11 +137,17 @@ NamedFile read_named_file(const YamlValue& asked_by) {
         throw asked_by.error(
             fmt::format("cannot be read: {} is no regular file; must be a file", path.string()));
     }
+    NamedFile file{path.string(), {}};
     try {
-        return {path.string(), read_file(path.string())};
+        file.content = read_file(path.string());
     } catch (const InputError& e) {
         throw asked_by.error(fmt::format("cannot be read: {}", e.what()));
     }
+    if (is_blank(file.content)) {
+        throw asked_by.error(fmt::format(
+            "cannot be used: {} is empty; must describe what it is named for", file.path));
+    }
+    return file;
 }
 
 YamlValue parse_opencv_yaml(NamedFile file) {

@@ -21,7 +21,8 @@ struct CameraFile {
 CameraFile read_camera_file(const YamlValue& asked_by, Index camera);
 
 /// A file that a campaign names, relative to it. Throws InputError at `asked_by` where there is
-/// none that can be read, and for what is no regular file: a named pipe would be waited for.
+/// none that can be read, or nothing but comments in it, and for what is no regular file: a named
+/// pipe would be waited for.
 struct NamedFile {
     std::string path, content;
 };

@@ -10,6 +10,7 @@
 #include "campaign_sections.hpp"
 #include "io/format/text.hpp"
 #include "keys.hpp"
+#include "measurement/camera_model.hpp"
 #include "measurement/camera_view.hpp"
 #include "posewise/measurement/camera_sensor.hpp"
 
@@ -88,8 +89,12 @@ CameraFile read_stated(const YamlValue& value, const YamlMap& map, Index camera)
     return read_camera_file(*file, camera);
 }
 
-/// By names: "fx_px", ..., "k1"; these are known then.
-void read_deviations(const YamlValue& value, SingleCamera& setup) {
+/// By names: "fx_px", ..., "k1"; these are known then. `is_exact`: what is stated to be.
+void read_deviations(const YamlValue& value, const std::vector<bool>& is_exact,
+                     SingleCamera& setup) {
+    if (value.is_map() && value.entries().empty()) {
+        throw value.error("is empty; must state one deviation at least, or be left out");
+    }
     std::vector<std::string> names = setup.intrinsics.names();
     for (std::size_t k = 0; k < 4; ++k) names[k] += "_px";
     setup.deviations.assign(names.size(), 0);
@@ -99,11 +104,44 @@ void read_deviations(const YamlValue& value, SingleCamera& setup) {
             throw entry.value.error("is of no intrinsic parameter; " + suggest(entry.key, names));
         }
         const auto k = static_cast<std::size_t>(found - names.begin());
+        if (is_exact[k]) {
+            throw entry.value.error(fmt::format(
+                "is stated beside 'known', by which {} is exact; must stand in one of them",
+                setup.intrinsics.names()[k]));
+        }
         const double deviation = entry.value.number();
         if (!(deviation > 0)) throw entry.value.error("must be above 0");
         setup.is_known[k] = true;
         setup.deviations[k] = k < 4 ? deviation / px_per_kpx : deviation;
     }
+}
+
+/// Where the image of a lens ends to grow outwards, px from the principal point: the least of both
+/// axes.
+double fold_radius(const Intrinsics& intrinsics) {
+    Lens lens = lens_of(intrinsics);
+    if (lens.distortion == Distortion::BrownConrady) lens.values[6] = lens.values[7] = 0;  // p1, p2
+    const Vector3d widest(widest_tangent(lens), 0, 1);
+    const double along_x = place_of(lens, widest).x() / kpx_per_px - intrinsics.cx;
+    return along_x * std::min(1.0, intrinsics.fy / intrinsics.fx);
+}
+
+/// No lens shows two directions at one place of its image.
+void check_folds(const YamlMap& map, const SingleCamera& setup) {
+    const Intrinsics& lens = setup.intrinsics;
+    if (!setup.image || lens.distortion == Distortion::None || !(lens.fx > 0 && lens.fy > 0))
+        return;
+    const double edge =
+        std::min({lens.cx, lens.cy, setup.image->x() - lens.cx, setup.image->y() - lens.cy});
+    const double radius = fold_radius(lens);
+    if (!(edge > 0 && radius < edge)) return;
+    const auto stated = map.find("distortion");
+    throw(stated ? *stated : map.require("file"))
+        .error(fmt::format(
+            "folds the image onto itself from {:.0f} px from the principal point on, within the "
+            "image, whose nearest edge is {:.0f} px away; must be of a lens whose image grows "
+            "outwards there: are model, coefficients and focal lengths right?",
+            radius, edge));
 }
 
 /// `number`: of the camera, from 0.
@@ -115,7 +153,9 @@ void read_intrinsics(const YamlValue& value, Index number, SingleCamera& setup) 
     const auto known = map.find("known");
     setup.is_known = known ? read_known(*known, names) : std::vector<bool>(names.size(), true);
     if (const auto deviations = map.find("deviations")) {
-        read_deviations(*deviations, setup);
+        const std::vector<bool> is_exact =
+            known ? setup.is_known : std::vector<bool>(names.size(), false);
+        read_deviations(*deviations, is_exact, setup);
     }
     for (std::size_t k = 0; k < 2; ++k) {
         const double focal = k == 0 ? setup.intrinsics.fx : setup.intrinsics.fy;
@@ -128,19 +168,24 @@ void read_intrinsics(const YamlValue& value, Index number, SingleCamera& setup) 
     if ((setup.intrinsics.fx > 0) != (setup.intrinsics.fy > 0)) {
         throw value.error("states one focal length; must state both fx_px and fy_px, or none");
     }
-    if (!camera.image) return;
-    if (!setup.image) setup.image = camera.image;
-    if (*setup.image == *camera.image) return;
-    throw value.error(fmt::format(
-        "is of an image of {:g} by {:g} px, image_px is {:g} by {:g}; must be of the same image, "
-        "neither scaled nor turned",
-        camera.image->x(), camera.image->y(), setup.image->x(), setup.image->y()));
+    if (camera.image && !setup.image) setup.image = camera.image;
+    if (camera.image && *setup.image != *camera.image) {
+        throw value.error(fmt::format(
+            "is of an image of {:g} by {:g} px, image_px is {:g} by {:g}; must be of the same "
+            "image, neither scaled nor turned",
+            camera.image->x(), camera.image->y(), setup.image->x(), setup.image->y()));
+    }
+    check_folds(map, setup);
 }
 
 /// What is not stated stays as it is.
 void read_growth(const YamlMap& sensor, NoiseGrowth& growth) {
     const auto value = sensor.find("noise");
     if (!value) return;
+    if (value->is_map() && value->entries().empty()) {
+        throw value->error(
+            "is empty; must state tilt, or focus_mm and aperture_mm, or be left out");
+    }
     const YamlMap noise(*value, keys::noise, "camera");
     if (const auto tilt = noise.find("tilt")) growth.tilt = tilt->number();
     const auto focus = noise.find_measure("focus"), aperture = noise.find_measure("aperture");
@@ -157,7 +202,8 @@ void read_growth(const YamlMap& sensor, NoiseGrowth& growth) {
 }
 
 void read_depths(const YamlMap& map, CameraView& view) {
-    if (const auto nearest = map.find_measure("nearest")) view.nearest = read_positive(*nearest);
+    if (const auto nearest = map.find_measure("nearest"))
+        view.nearest = read_positive(*nearest, true);
     const auto farthest = map.find_measure("farthest");
     if (!farthest) return;
     view.farthest = read_positive(*farthest);
@@ -176,11 +222,8 @@ void read_view(const YamlValue& value, CameraSetup& setup) {
         setup.view.most_tilt = read_positive(*tilt, false, 1.5707963267948966);
     }
     if (const auto least = view.find("least_corners")) {
-        setup.view.least_corners = static_cast<Index>(least->natural_number());
-        if (setup.view.least_corners < 1 || setup.view.least_corners > std::ssize(setup.corners)) {
-            throw least->error(fmt::format("is {}; must be from 1 to the board's {} corners",
-                                           setup.view.least_corners, setup.corners.size()));
-        }
+        setup.view.least_corners = static_cast<Index>(
+            least->natural_number(1, setup.corners.size(), ", the board's corners"));
     }
     const auto front = view.find("front");
     if (!front) return;
@@ -194,8 +237,11 @@ void read_image(const YamlMap& sensor, SingleCamera& setup) {
     const auto image = sensor.find_measure("image");
     if (!image) return;
     const VectorXd size = px_per_kpx * image->list_to_si(2);
-    if (!(size.minCoeff() >= 1)) {
-        throw image->value.error("must be a width and a height, each at least 1 px");
+    constexpr double rounding = 1e-6;  // px
+    const bool is_whole = (size - size.array().round().matrix()).cwiseAbs().maxCoeff() < rounding;
+    if (!(size.minCoeff() >= 1) || !is_whole) {
+        throw image->value.error(
+            "must be a width and a height, each a whole number of pixels, at least 1");
     }
     setup.image = size;
 }

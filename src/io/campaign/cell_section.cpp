@@ -166,12 +166,8 @@ void read_reflectors(const YamlValue& value, Index target_count, Sight& sight) {
         }
     }
     if (const auto least = map.find("at_least_visible")) {
-        const std::uint64_t number = least->natural_number();
-        if (number < 1 || number > static_cast<std::uint64_t>(target_count)) {
-            throw least->error("is " + std::to_string(number) + "; must be from 1 to " +
-                               std::to_string(target_count) + ", the number of targets");
-        }
-        sight.least_visible = static_cast<Index>(number);
+        sight.least_visible = static_cast<Index>(least->natural_number(
+            1, static_cast<std::uint64_t>(target_count), ", the number of targets"));
     }
 }
 

@@ -274,11 +274,12 @@ const YamlKeys camera{
          "none", "`camera.yaml`"},
         {"known", "intrinsics",
          "exact as stated: `true`, `false`, or the names of those that are: fx, fy, cx, cy, k1, "
-         "...",
+         "...; all others are found, coefficients that are 0, too, unless `deviations` has them",
          "`true`", "`false`"},
         {"deviations", "intrinsics",
          "standard deviations about their stated values of those that are known so well, by name "
-         "(fx_px, fy_px, cx_px, cy_px, k1, ...): their errors are found with the rest",
+         "(fx_px, fy_px, cx_px, cy_px, k1, ...): their errors are found with the rest; none that "
+         "`known` says to be exact, which without `known` all others are",
          "none: they are exact, or not known", "`{fx_px: 2, fy_px: 2, cx_px: 4, cy_px: 4}`"},
         {"model", "distortion",
          "`none`, `brown_conrady` (k1 k2 p1 p2, k3, k4 k5 k6) or `fisheye` (k1 k2 k3 k4), with "

@@ -25,10 +25,7 @@ Vector3d generic_target(std::size_t index) {
 constexpr std::size_t most_targets = 1000;
 
 std::vector<Vector3d> generic_targets(const YamlValue& count) {
-    const std::uint64_t number = count.natural_number();
-    if (number < 1 || number > most_targets) {
-        throw count.error("is " + std::to_string(number) + "; must be from 1 to 1000");
-    }
+    const std::uint64_t number = count.natural_number(1, most_targets);
     std::vector<Vector3d> targets;
     while (targets.size() < number) targets.push_back(generic_target(targets.size()));
     return targets;
@@ -416,9 +413,10 @@ std::optional<Index> read_same_camera(const YamlValue& sensor,
                                       const std::vector<SensorPart>& before) {
     const auto value = find_of(sensor, "same_camera");
     if (!value) return std::nullopt;
-    const auto number = static_cast<Index>(value->natural_number());
-    const bool is_before = number >= 1 && number <= std::ssize(before);
-    if (is_before && as_camera(before, number - 1) != nullptr &&
+    if (before.empty()) throw value->error("is of the first sensor; must be left out");
+    const auto number = static_cast<Index>(
+        value->natural_number(1, before.size(), ", the number of a sensor before this one"));
+    if (as_camera(before, number - 1) != nullptr &&
         !before[static_cast<std::size_t>(number - 1)].same_camera) {
         return number - 1;
     }

@@ -141,13 +141,18 @@ double YamlValue::number(const std::string& or_else) const {
     return number.value;
 }
 
-std::uint64_t YamlValue::natural_number() const {
+std::uint64_t YamlValue::natural_number(std::uint64_t least, std::uint64_t most,
+                                        const std::string& what) const {
     const std::string digits = node_.IsScalar() ? node_.Scalar() : "";
     std::uint64_t number = 0;
     const auto [end, problem] =
         std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    const std::string range = fmt::format("from {} to {}{}", least, most, what);
     if (problem != std::errc() || end != digits.data() + digits.size()) {
-        throw error(describe(node_) + "; must be a whole number from 0 to 18446744073709551615");
+        throw error(describe(node_) + "; must be a whole number " + range);
+    }
+    if (number < least || number > most) {
+        throw error(fmt::format("is {}; must be {}", number, range));
     }
     return number;
 }

@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,7 +35,10 @@ class YamlValue {
     FileLocation text_location() const;
     /// `or_else`: what else the caller takes, for the message: ", or a list".
     double number(const std::string& or_else = "") const;
-    std::uint64_t natural_number() const;
+    /// `what`: the largest is, for the message: ", the number of targets".
+    std::uint64_t natural_number(std::uint64_t least = 0,
+                                 std::uint64_t most = std::numeric_limits<std::uint64_t>::max(),
+                                 const std::string& what = "") const;
     bool boolean(const std::string& or_else = "") const;
     bool is_list() const { return node_.IsSequence(); }
     bool is_map() const { return node_.IsMap(); }
