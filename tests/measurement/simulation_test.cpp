@@ -96,6 +96,32 @@ TEST(Simulate, RefusesPlacesThatNoCellHas) {
     expect_refused(put_base(2.5e-3), "is stated 2.5 mm away, which is no place for it");
 }
 
+TEST(Simulate, NamesTheSensorThatIsTooFarAway) {
+    const Campaign alone = tracked_campaign(fanuc());
+    const auto error_with = [&](const Vector3d& second, const Vector3d& target) {
+        Campaign campaign = alone;
+        Isometry3d frame = Isometry3d::Identity();
+        frame.translation() = second;
+        const auto combined = std::make_shared<CombinedSensor>(
+            std::vector<SensorPart>{{alone.sensor}, {alone.sensor, std::nullopt}});
+        campaign.sensor = combined;
+        VectorXd own = alone.nominal.sensor;
+        own.head<3>() = target;
+        campaign.nominal.sensor =
+            combined->unknowns({alone.nominal.sensor, own}, {Isometry3d::Identity(), frame});
+        return input_error_of([&] { simulate(campaign, {.pose_count = 3}); });
+    };
+    const Vector3d near(0.1, 0.2, 0.3);
+    EXPECT_EQ(error_with({3, 0, 0}, near), "no error");
+    const std::string far = error_with({4000, 0, 0}, near);
+    EXPECT_NE(far.find("the frame of sensor 2 (sensors[2].frame), seen from the base, is stated "),
+              std::string::npos)
+        << far;
+    EXPECT_NE(far.find("must be within 1000 m"), std::string::npos) << far;
+    EXPECT_NE(error_with({3, 0, 0}, {60, 0, 0}).find("target 1 of sensor 2, seen from the flange"),
+              std::string::npos);
+}
+
 TEST(Simulate, SensorNoiseHasTheStatedVariance) {
     const Campaign campaign = tracked_campaign(fanuc());
     const Simulation simulation = simulate(campaign, {.pose_count = 300, .repeats = 5});

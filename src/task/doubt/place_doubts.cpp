@@ -4,6 +4,7 @@
 
 #include "core/format.hpp"
 #include "posewise/core/types.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "posewise/task/doubts.hpp"
 
 namespace posewise {
@@ -106,6 +107,25 @@ std::string describe(const PlaceDoubt& place) {
                        turn);
 }
 
+/// Of further sensors whose frames are found, as they are stated and as they were.
+std::vector<PlaceDoubt> frames_of(const Campaign& campaign, const Parameters& registered) {
+    std::vector<PlaceDoubt> frames;
+    const auto* const combined = dynamic_cast<const CombinedSensor*>(campaign.sensor.get());
+    for (Index k = 1; combined != nullptr && k < combined->part_count(); ++k) {
+        const SensorPart& part = combined->part(k);
+        if (part.known_frame || !part.has_nominal_frame) continue;
+        const Isometry3d stated = combined->frame(k, campaign.nominal.sensor);
+        const Isometry3d found = combined->frame(k, registered.sensor);
+        frames.push_back({fmt::format("the frame of sensor {}", k + 1),
+                          stated.translation(),
+                          found.translation(),
+                          find_unit(stated.translation().norm(), found.translation().norm()),
+                          {},
+                          find_turn(stated, found)});
+    }
+    return frames;
+}
+
 }  // namespace
 
 std::vector<PlaceDoubt> find_place_doubts(const Campaign& campaign, const Parameters& registered) {
@@ -124,6 +144,7 @@ std::vector<PlaceDoubt> find_place_doubts(const Campaign& campaign, const Parame
              {},
              find_turn(base, registered.world_from_base)});
     }
+    for (PlaceDoubt& frame : frames_of(campaign, registered)) add(frame);
     const Targets& targets = campaign.sensor->targets();
     if (!campaign.has_nominal_targets || targets.unknown_count() < 3 * targets.count())
         return doubts;
