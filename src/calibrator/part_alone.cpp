@@ -5,7 +5,7 @@ namespace posewise::detail {
 PartAlone take_part(const Campaign& campaign, const CombinedSensor& combined, Index part,
                     const Measurements& measurements, const Parameters& registered) {
     const SensorPart& stated = combined.part(part);
-    PartAlone alone{campaign, measurements, combined.parameters_of(part, registered)};
+    PartAlone alone{campaign, measurements, combined.parameters_of(part, registered), part};
     alone.campaign.sensor = stated.sensor;
     alone.campaign.prior.reset();
     alone.campaign.nominal = combined.parameters_of(part, campaign.nominal);

@@ -12,6 +12,7 @@ struct PartAlone {
     Campaign campaign;
     Measurements measured;    ///< configurations that show any of its targets
     Parameters registered{};  ///< what it has of those that are stated as registered
+    Index part = 0;           ///< which of several
 };
 
 PartAlone take_part(const Campaign& campaign, const CombinedSensor& combined, Index part,

@@ -146,8 +146,10 @@ void describe_views(const std::vector<ViewDoubt>& views, const std::string& at,
     }
 }
 
-void describe_camera(const CameraDoubt& doubt, const std::string& at,
+void describe_camera(const CameraDoubt& doubt, const std::string& where,
                      std::vector<std::string>& sentences) {
+    const std::string at =
+        where + (doubt.sensor > 0 ? fmt::format("sensor {}: ", doubt.sensor) : "");
     if (doubt.board_factor != 1) {
         const std::string size =
             doubt.square > 0

@@ -6,9 +6,11 @@
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/sensors.hpp"
+#include "posewise/task/doubts.hpp"
 #include "support/campaign_from.hpp"
 #include "support/combined.hpp"
 #include "support/coverage.hpp"
+#include "support/slips.hpp"
 
 /// Several instruments that see one robot, by simulated campaigns.
 namespace posewise {
@@ -99,6 +101,27 @@ TEST(CombinedSensors, TellNoLessThanOneOfThem) {
         together.head(by_tracker.size()).cwiseQuotient(by_tracker);  // targets come first
     EXPECT_LE(ratio.maxCoeff(), 1 + 1e-9);
     EXPECT_LT(ratio.minCoeff(), 0.95);
+}
+
+/// Alone the second board, which few views show, could be of any size: the robot would give way.
+TEST(CombinedSensors, NameTheBoardWhoseSquaresAreOfAnotherSize) {
+    const Campaign campaign = testing::campaign_from(testing::two_boards);
+    const Measurements measured =
+        simulate(campaign, {.pose_count = 40, .truth_seed = 6}).measurements;
+    EXPECT_FALSE(find_camera_doubt(campaign, measured,
+                                   register_base_and_targets(campaign, measured).parameters));
+    for (const auto& [sensor, side, stated_side] :
+         {std::tuple(1, "square_mm: 25", "square_mm: 25.4"),
+          std::tuple(2, "square_mm: 30", "square_mm: 25.4")}) {
+        const Campaign stated =
+            testing::campaign_from(testing::replaced(testing::two_boards, side, stated_side));
+        const auto doubt = find_camera_doubt(
+            stated, measured, register_base_and_targets(stated, measured).parameters);
+        ASSERT_TRUE(doubt) << sensor;
+        EXPECT_EQ(doubt->sensor, sensor);
+        EXPECT_NEAR(doubt->board_factor * 25.4, sensor == 1 ? 25 : 30, 0.15);
+        EXPECT_NEAR(doubt->square, 0.0254, 1e-12);
+    }
 }
 
 }  // namespace

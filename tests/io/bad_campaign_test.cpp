@@ -43,6 +43,8 @@ TEST(BadCampaign, Files) {
         {campaign_text, "just words\n",
          "1:1: the file is 'just words'; must be a map of keys and values"},
         {campaign_text, "name: [a, b\nrobot: {\n", "[...]is not YAML[...]"},
+        {"name: crane\n", "name: \"\"\n",
+         "1:7: name is empty; must be what the campaign is called"},
         {campaign_text, "name: a\n---\nname: b\n",
          "2:1: a second document begins; must be one document"},
     });

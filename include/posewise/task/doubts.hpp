@@ -353,6 +353,7 @@ std::vector<ViewDoubt> find_view_doubts(const Campaign& campaign, const Measurem
 
 /// What looks wrong of a camera's board or its intrinsic parameters.
 struct CameraDoubt {
+    Index sensor = 0;  ///< which of several sees so, from 1; 0: it is the only one
     /// A calibration says that the board is so many times as large; 1: nothing is wrong.
     double board_factor = 1;
     double square = 0;         ///< side of a chessboard's squares as stated, m; 0: it is none
@@ -372,7 +373,8 @@ struct CameraDoubt {
     double scatter = 0;
     double sigma = 0;  ///< as stated, px
 };
-/// Of corners in images; `registered` is as for find_misfit().
+/// Of corners in images, of several sensors of the first that has one, a board of another size
+/// before all else; `registered` is as for find_misfit().
 std::optional<CameraDoubt> find_camera_doubt(const Campaign& campaign,
                                              const Measurements& measurements,
                                              const Parameters& registered);

@@ -259,6 +259,9 @@ CampaignFile parse(const std::string& content, const std::string& path,
     file.checksum = detail::checksum_of(content);
     Campaign& campaign = file;
     campaign.name = read_name(map.require("name"));
+    if (campaign.name.empty()) {
+        throw map.require("name").error("is empty; must be what the campaign is called");
+    }
 
     detail::RobotSection robot = read_robot(map.require("robot"), errors);
     detail::ExactAngles exact = detail::with_exact_angles(robot.declared);

@@ -70,6 +70,7 @@ Json views_to_json(const std::vector<ViewDoubt>& views) {
 
 Json camera_to_json(const CameraDoubt& doubt) {
     Json json;
+    if (doubt.sensor > 0) json["sensor"] = doubt.sensor;
     if (doubt.board_factor != 1) {
         json["board_factor"] = doubt.board_factor;
         json["rms_px"] = 1e3 * doubt.misfit;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrator/part_alone.hpp"
 #include "core/decompositions.hpp"
 #include "core/statistics.hpp"
 #include "other_image.hpp"
@@ -8,6 +9,7 @@
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/jacobian/identification.hpp"
 #include "posewise/measurement/camera_sensor.hpp"
+#include "posewise/measurement/sensors.hpp"
 #include "posewise/task/doubts.hpp"
 
 namespace posewise {
@@ -19,36 +21,85 @@ double misfit_of(const Campaign& campaign, const Measurements& measured,
         .orientation_rms;
 }
 
+/// A campaign in which the size of a board is unknown, and which of the sensor's unknowns that is.
+struct OpenSize {
+    Campaign campaign;
+    Index unknown = 0;
+};
+
+std::shared_ptr<const CameraSensor> with_unknown_size(const CameraSensor& camera) {
+    CameraSetup setup = camera.setup();
+    setup.is_scale_unknown = true;
+    return std::make_shared<CameraSensor>(std::move(setup));
+}
+
+/// Its nominal unknowns, as many as stated, with that of the size.
+VectorXd with_size_of_one(const VectorXd& unknowns) {
+    VectorXd all(unknowns.size() + 1);
+    all << unknowns, 0;
+    return all;
+}
+
+OpenSize open_size(const Campaign& campaign, const CameraSensor& camera) {
+    OpenSize open{campaign, campaign.nominal.sensor.size()};
+    open.campaign.sensor = with_unknown_size(camera);
+    open.campaign.nominal.sensor = with_size_of_one(campaign.nominal.sensor);
+    return open;
+}
+
+/// Of one of several sensors, beside the others.
+OpenSize open_size(const Campaign& campaign, const CombinedSensor& combined,
+                   const CameraSensor& camera, Index opened) {
+    std::vector<SensorPart> parts;
+    std::vector<VectorXd> unknowns;
+    std::vector<Isometry3d> frames;
+    for (Index k = 0; k < combined.part_count(); ++k) {
+        parts.push_back(combined.part(k));
+        unknowns.push_back(combined.unknowns_of(k, campaign.nominal.sensor));
+        frames.push_back(combined.frame(k, campaign.nominal.sensor));
+    }
+    const auto of_opened = static_cast<std::size_t>(opened);
+    parts[of_opened].sensor = with_unknown_size(camera);
+    unknowns[of_opened] = with_size_of_one(unknowns[of_opened]);
+    OpenSize open{campaign};
+    const auto sensor = std::make_shared<CombinedSensor>(std::move(parts));
+    open.campaign.sensor = sensor;
+    open.campaign.nominal.sensor = sensor->unknowns(unknowns, frames);
+    // Where it is told from all others: 1 there, and 0 of all else.
+    for (VectorXd& own : unknowns) own.setZero();
+    const VectorXd none = sensor->unknowns(unknowns, frames);
+    unknowns[of_opened].tail<1>()[0] = 1;
+    (sensor->unknowns(unknowns, frames) - none).maxCoeff(&open.unknown);
+    return open;
+}
+
 /// Whether the robot moved enough to tell how large the board is, and it is of another size.
-void find_board_factor(const Campaign& campaign, const CameraSensor& camera,
+void find_board_factor(const Campaign& campaign, const CameraSensor& camera, OpenSize open,
                        const Measurements& measured, const Parameters& registered_as_stated,
                        CameraDoubt& doubt) {
-    CameraSetup setup = camera.setup();
-    if (setup.is_scale_unknown) return;
-    setup.is_scale_unknown = true;
-    Campaign open = campaign;
-    const auto sensor = std::make_shared<CameraSensor>(setup);
-    open.sensor = sensor;
-    open.nominal.sensor.conservativeResize(open.nominal.sensor.size() + 1);
-    open.nominal.sensor.tail<1>().setZero();
-    open.prior.reset();
-    open.spread.is_prior = true;  // whatever of its errors the poses do not tell
-    const Registration registered = register_base_and_targets(open, measured);
+    const CameraSetup& setup = camera.setup();
+    open.campaign.prior.reset();
+    open.campaign.spread.is_prior = true;  // whatever of its errors the poses do not tell
+    const Registration registered = register_base_and_targets(open.campaign, measured);
     if (!registered.is_determined()) return;
     // The robot's own errors hide it before they are found.
-    const Estimate scaled = identify(open, measured, registered.parameters);
+    const Estimate scaled = identify(open.campaign, measured, registered.parameters);
     if (scaled.covariance.size() == 0) return;
-    const double factor = sensor->board_factor(scaled.parameters.sensor);
-    const double sigma = standard_deviations(scaled).tail<1>()[0];
+    const VectorXd sigmas = standard_deviations(scaled);
+    const Index first = sigmas.size() - scaled.parameters.sensor.size();
+    const double factor = 1 + scaled.parameters.sensor[open.unknown];
+    const double sigma = sigmas[first + open.unknown];
     constexpr double clearly = 5;    // standard deviations
     constexpr double least = 0.004;  // lengths of robots are wrong by less
     if (!(factor > 0 && std::abs(factor - 1) > std::max(least, clearly * sigma))) return;
-    Campaign as_stated = open;
+    Campaign as_stated = open.campaign;
     as_stated.sensor = campaign.sensor;
     as_stated.nominal = campaign.nominal;
     const Estimate stated = identify(as_stated, measured, registered_as_stated);
-    const double misfit = misfit_of(campaign, measured, stated.parameters);
-    const double scaled_misfit = misfit_of(open, measured, scaled.parameters);
+    // The search may end where it is worse than it began: its errors are far from any robot's.
+    const double misfit = std::min(misfit_of(campaign, measured, stated.parameters),
+                                   misfit_of(campaign, measured, registered_as_stated));
+    const double scaled_misfit = misfit_of(open.campaign, measured, scaled.parameters);
     if (!(scaled_misfit < misfit)) return;  // something else is wrong
     doubt.misfit = misfit;
     doubt.scaled_misfit = scaled_misfit;
@@ -133,30 +184,60 @@ void check_sigma(const Campaign& campaign, const CameraSensor& camera, const Mea
     doubt.scatter = times * doubt.sigma;
 }
 
-}  // namespace
+/// The size of a board beside others that the same camera sees is told by these, too: alone it
+/// hides in the robot, of which one board may show little.
+void find_board_factor(const Campaign& campaign, const Measurements& measured,
+                       const Parameters& registered, const detail::PartAlone& alone,
+                       const CameraSensor& camera, CameraDoubt& doubt) {
+    if (camera.setup().is_scale_unknown) return;
+    const auto* const combined = dynamic_cast<const CombinedSensor*>(campaign.sensor.get());
+    if (combined == nullptr || !combined->part(alone.part).same_camera) {
+        return find_board_factor(alone.campaign, camera, open_size(alone.campaign, camera),
+                                 alone.measured, alone.registered, doubt);
+    }
+    find_board_factor(campaign, camera, open_size(campaign, *combined, camera, alone.part),
+                      measured, registered, doubt);
+}
 
-std::optional<CameraDoubt> find_camera_doubt(const Campaign& campaign, const Measurements& measured,
-                                             const Parameters& registered) {
-    const auto* const camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
-    if (camera == nullptr) return std::nullopt;
-    CameraDoubt doubt;
-    find_board_factor(campaign, *camera, measured, registered, doubt);
-    check_principal_point(*camera, measured, registered.sensor, doubt);
-    for (Index c = 0; c < camera->camera_count() && !doubt.focal_lengths; ++c) {
-        const Intrinsics found = camera->placed(c, registered.sensor).intrinsics;
+/// Of what is not about the size of the board.
+void check_others(const detail::PartAlone& alone, const CameraSensor& camera, CameraDoubt& doubt) {
+    const VectorXd& unknowns = alone.registered.sensor;
+    check_principal_point(camera, alone.measured, unknowns, doubt);
+    for (Index c = 0; c < camera.camera_count() && !doubt.focal_lengths; ++c) {
+        const Intrinsics found = camera.placed(c, unknowns).intrinsics;
         if (found.fx > 0 && found.fy > 0) continue;
         doubt.camera = c;
         doubt.focal_lengths = {found.fx, found.fy};
     }
-    doubt.is_seen_from_back = is_seen_from_back(campaign, *camera, measured, registered);
+    doubt.is_seen_from_back =
+        is_seen_from_back(alone.campaign, camera, alone.measured, alone.registered);
     if (doubt.board_factor == 1 && !doubt.is_seen_from_back) {
-        check_sigma(campaign, *camera, measured, registered, doubt);
+        check_sigma(alone.campaign, camera, alone.measured, alone.registered, doubt);
     }
-    if (doubt.board_factor == 1 && !doubt.principal_point && !doubt.focal_lengths &&
-        !doubt.is_seen_from_back && doubt.scatter == 0) {
-        return std::nullopt;
+}
+
+bool is_any(const CameraDoubt& doubt) {
+    return doubt.board_factor != 1 || doubt.principal_point || doubt.focal_lengths ||
+           doubt.is_seen_from_back || doubt.scatter > 0;
+}
+
+}  // namespace
+
+std::optional<CameraDoubt> find_camera_doubt(const Campaign& campaign, const Measurements& measured,
+                                             const Parameters& registered) {
+    std::optional<CameraDoubt> first;
+    for (const auto& alone : detail::parts_alone(campaign, measured, registered)) {
+        const auto* const camera = dynamic_cast<const CameraSensor*>(alone.campaign.sensor.get());
+        if (camera == nullptr) continue;
+        CameraDoubt doubt;
+        if (campaign.sensor->is_combined()) doubt.sensor = alone.part + 1;
+        find_board_factor(campaign, measured, registered, alone, *camera, doubt);
+        check_others(alone, *camera, doubt);
+        // A board of another size makes all that one sees doubtful, whichever it is.
+        if (doubt.board_factor != 1) return doubt;
+        if (is_any(doubt) && !first) first = doubt;
     }
-    return doubt;
+    return first;
 }
 
 }  // namespace posewise

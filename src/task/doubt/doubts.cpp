@@ -244,11 +244,7 @@ Doubts find_doubts(const Campaign& campaign, const Measurements& measurements,
         if (std::ranges::find(views, view.sample) == views.end()) views.push_back(view.sample);
     }
     const Measurements measured = leave_out(measurements, views);
-    for (const detail::PartAlone& part : detail::parts_alone(campaign, measured, registered)) {
-        if (!doubts.camera) {
-            doubts.camera = find_camera_doubt(part.campaign, part.measured, part.registered);
-        }
-    }
+    doubts.camera = find_camera_doubt(campaign, measured, registered);
     if (doubts.camera && doubts.camera->board_factor != 1) {
         doubts.misfit.reset();
     } else if (!campaign.sensor->has_only_pixels()) {
