@@ -57,7 +57,8 @@ class Bundle {
         : views_(views),
           intrinsics_(std::move(intrinsics)),
           poses_(std::move(poses)),
-          unknown_(std::move(unknown)) {}
+          unknown_(std::move(unknown)),
+          squares_(squares_of(intrinsics_, poses_)) {}
 
     const Intrinsics& intrinsics() const { return intrinsics_; }
     const std::vector<Isometry3d>& poses() const { return poses_; }
@@ -71,7 +72,6 @@ class Bundle {
     }
 
     void polish() {
-        squares_ = squares_of(intrinsics_, poses_);
         double damping = 1e-4;
         constexpr int most_steps = 50;
         for (int step = 0; step < most_steps && damping < 1e8; ++step) {
@@ -142,7 +142,7 @@ class Bundle {
     Intrinsics intrinsics_;
     std::vector<Isometry3d> poses_;
     std::vector<Index> unknown_;
-    double squares_ = 0;
+    double squares_;
 };
 
 /// RMS distances of places in an image from their middle along the direction of most, and across.
@@ -309,7 +309,8 @@ std::optional<Intrinsics> find_intrinsics(const std::vector<BoardView>& views,
         if (!is_known[k]) unknown.push_back(static_cast<Index>(k));
     }
     Intrinsics start = stated;
-    if (!(stated.fx > 0 && stated.fy > 0)) {
+    const bool is_stated = stated.fx > 0 && stated.fy > 0;
+    if (!is_stated) {
         if (views.empty()) return std::nullopt;
         const auto plane = plane_of(views.front().corners);
         const auto pinhole = plane ? start_of(views, *plane, image) : std::nullopt;
@@ -330,8 +331,14 @@ std::optional<Intrinsics> find_intrinsics(const std::vector<BoardView>& views,
     }
     if (found.empty()) return std::nullopt;
     Bundle bundle(found, start, poses, unknown);
+    const double at_start = bundle.squares();
     bundle.polish();
-    if (!std::isfinite(bundle.squares())) return start;
+    // Few views of few corners are fitted a little better by intrinsics that are far from right.
+    constexpr double much_better = 9;
+    if (!std::isfinite(bundle.squares()) ||
+        (is_stated && at_start <= much_better * bundle.squares())) {
+        return start;
+    }
     return bundle.intrinsics();
 }
 

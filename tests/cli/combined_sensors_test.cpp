@@ -63,6 +63,9 @@ TEST_F(CombinedSensors, AreTakenByEveryCommand) {
     run_well("calibrate c.yaml -m m.csv --folds 0 -o e.json --report e.html");
     run_well("simulate c.yaml --poses 20 --seed 5 -o next.csv");
     run_well("calibrate c.yaml -m next.csv --from e.json --folds 3");
+    write_text("larger.yaml", with(tracker_and_camera, "rows: 4", "rows: 5"));
+    expect_input_error("plan larger.yaml -k 5 --from e.json -o p.json",
+                       "must be an estimate of this campaign");
     run_well("calibrate c.yaml -m m.csv --validate next.csv --folds 0");
     // Stopped early, which is a warning: refining what many corners tell takes a minute.
     EXPECT_EQ(run("plan c.yaml -k 14 --pool 100 --workspace-poses 20 --time 5 -o p.json").code, 0);

@@ -214,6 +214,30 @@ TEST(Intrinsics, DoNotFollowFromOneViewWithoutTheImagesMiddle) {
                                 Vector2d(1310, 940)));
 }
 
+/// Few views of few corners that are not exactly where they are stated fit far from the truth best.
+TEST(Intrinsics, ThatAreStatedAndFitAreKept) {
+    const std::vector<Vector3d> stated{{0, 0, 0},         {0.03, 0, 0.01},    {-0.02, 0.03, 0.01},
+                                       {-0.02, -0.03, 0}, {0.04, 0.04, 0.03}, {-0.05, 0, 0.03}};
+    RandomStream stream(55);
+    std::vector<BoardView> views;
+    for (Index k = 0; k < 10; ++k) {
+        std::vector<Vector3d> true_corners;
+        for (const Vector3d& corner : stated) {
+            true_corners.push_back(corner + random_vector(stream, 3, 5e-4));
+        }
+        BoardView view = view_of(true_corners, pinhole, somewhere(stream));
+        view.corners = stated;
+        views.push_back(std::move(view));
+    }
+    const std::vector<bool> unknown(4, false);
+    EXPECT_EQ(find_intrinsics(views, pinhole, unknown, {})->values(), pinhole.values());
+    VectorXd wrong = pinhole.values();
+    wrong.head<2>() *= 2;
+    const auto found =
+        find_intrinsics(several_views(pinhole, 10), pinhole.with(wrong), unknown, {});
+    EXPECT_LT((found->values() - pinhole.values()).cwiseAbs().maxCoeff(), 1e-6);
+}
+
 TEST(CameraSensor, SeesCornersBeforeItWithinItsImageFromTheFront) {
     CameraSetup setup = fixed_camera();
     setup.intrinsics = pinhole;

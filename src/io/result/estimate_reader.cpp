@@ -128,8 +128,9 @@ void check_readings(const JsonValue& value, const Sensor& sensor) {
                       sensor.words().readings + "; must be an estimate of this campaign");
 }
 
-/// Of another board or another number of targets. Those that are new now may be others.
-void check_target_count(const JsonValue& measured, const Sensor& sensor) {
+/// Of another board, which nothing else of an estimate tells.
+void check_corner_count(const JsonValue& measured, const Sensor& sensor) {
+    if (!sensor.has_pixels() || sensor.has_contacts()) return;
     const double samples = measured["samples"].number(), readings = measured["readings"].number();
     const Index count = sensor.target_count();
     if (readings == samples * static_cast<double>(count)) return;
@@ -142,7 +143,7 @@ void check_target_count(const JsonValue& measured, const Sensor& sensor) {
 EarlierFile read_root(const JsonValue& root, const Campaign& campaign, const EarlierUse& use) {
     if (!use.has_new_targets) check_readings(root["readings"], *campaign.sensor);
     if (!use.has_new_targets && !use.has_new_base && root.has("measured")) {
-        check_target_count(root["measured"], *campaign.sensor);
+        check_corner_count(root["measured"], *campaign.sensor);
     }
     detail::check_is_of_robot(root["chain"], campaign.robot);
     EarlierFile earlier;
