@@ -364,8 +364,7 @@ std::vector<Answer> answer(const Calibration& calibration) {
     add("drift", "Drift", describe_order(calibration) + describe_conditions(calibration));
     add("more", "More poses for 20 % less", describe_more(calibration, units));
     add("image", "Where in the image",
-        detail::describe_images("corners of the board cover ", calibration.images,
-                                *calibration.campaign.sensor));
+        detail::describe_images("corners of the board cover ", calibration.images));
     add("residuals", "Residuals", judge_residuals(calibration));
     add("missing_errors", "Errors left out", describe_missing_errors(calibration));
     add("negative_compliances", "Compliances", judge_compliances(calibration));

@@ -179,10 +179,8 @@ std::vector<Answer> complete(const Planning& planning, const std::string& accura
     add("influence", "Which pose matters most", describe_influence(planning));
     add("more", "More poses for 20 % less", more);
     add("measured", "Measured already", describe_together(planning.plan.request.sources));
-    const Sensor& sensor = *planning.campaign.sensor;
     add("image", "Where in the image",
-        detail::describe_images("corners of the board are expected to cover ", planning.images,
-                                sensor));
+        detail::describe_images("corners of the board are expected to cover ", planning.images));
     return answers;
 }
 

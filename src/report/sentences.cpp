@@ -106,13 +106,11 @@ std::string describe(const Cure& cure, const Campaign& campaign) {
                        campaign.sensor->main_units().error);
 }
 
-std::string describe_images(const std::string& begin, const std::vector<ImageCoverage>& images,
-                            const Sensor& sensor) {
-    const bool is_alone = camera_count(sensor) == 1;
+std::string describe_images(const std::string& begin, const std::vector<ImageCoverage>& images) {
     std::string text;
     for (const ImageCoverage& image : images) {
         text += fmt::format("{}{:.0f} % of {} image", text.empty() ? begin : "; ", 100 * image.part,
-                            is_alone ? "the" : fmt::format("camera {}'s", image.camera + 1));
+                            image.name.empty() ? "the" : image.name + "'s");
         if (image.part == 0 || image.empty.empty()) continue;
         text += ", none at its " + list_words(image.empty);
     }

@@ -35,8 +35,7 @@ std::string describe(const Cure& cure, const Campaign& campaign);
 
 /// "corners of the board cover 71 % of the image, none at its top left or bottom right", after the
 /// words that it shall begin with.
-std::string describe_images(const std::string& begin, const std::vector<ImageCoverage>& images,
-                            const Sensor& sensor);
+std::string describe_images(const std::string& begin, const std::vector<ImageCoverage>& images);
 
 /// Says so if a study judges on fewer than least_judged poses somewhere; else empty.
 std::string describe_least_judged(const Study& study);

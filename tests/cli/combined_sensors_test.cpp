@@ -1,6 +1,8 @@
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <sstream>
 
+#include "page_document.hpp"
 #include "program.hpp"
 #include "support/combined.hpp"
 
@@ -24,6 +26,9 @@ class CombinedSensors : public Program {
     }
     nlohmann::json json_of(const std::string& name) const {
         return nlohmann::json::parse(text_of(name));
+    }
+    nlohmann::json residuals_in(const std::string& page) const {
+        return document_in_page(text_of(page))["parts"][0]["residuals"];
     }
     std::vector<std::string> lines_of(const std::string& name) const {
         std::vector<std::string> lines;
@@ -55,12 +60,21 @@ TEST_F(CombinedSensors, AreCalibratedTogetherAndJudgedEachInItsUnit) {
     EXPECT_GT(by_sensor[1]["held_out"]["reprojection_rms_px"], 0.2);
     EXPECT_LT(by_sensor[1]["held_out"]["reprojection_rms_px"], 2);
     EXPECT_TRUE(json_of("e.json")["sensor"].contains("sensor2.x_m"));
+    EXPECT_NE(found.find("Where in the image        corners of the board cover "),
+              std::string::npos);
+    EXPECT_EQ(json_of("e.json")["measured"]["images"][0]["sensor"], 2);
 }
 
 TEST_F(CombinedSensors, AreTakenByEveryCommand) {
     EXPECT_NE(run_well("inspect c.yaml -m m.csv").find("2) 24 corners of a board"),
               std::string::npos);
     run_well("calibrate c.yaml -m m.csv --folds 0 -o e.json --report e.html");
+    const auto residuals = residuals_in("e.html");
+    const auto corners = residuals["of_cameras"];
+    EXPECT_EQ(residuals["readings"]["residual"].size(), 3U);
+    EXPECT_EQ(corners["axes"], (std::vector<std::string>{"u", "v"}));
+    EXPECT_EQ(corners["readings"]["camera"].size(), 40 * 2 * 24U);
+    EXPECT_LT(corners["images"][0]["rms_px"], 1);
     run_well("simulate c.yaml --poses 20 --seed 5 -o next.csv");
     run_well("calibrate c.yaml -m next.csv --from e.json --folds 3");
     write_text("larger.yaml", with(tracker_and_camera, "rows: 4", "rows: 5"));
@@ -104,6 +118,11 @@ TEST_F(CombinedSensors, MayBeOneCameraBeforeTwoBoards) {
     EXPECT_NE(run_well("inspect b.yaml -m b.csv").find("seen by the same camera as 1)"),
               std::string::npos);
     run_well("calibrate b.yaml -m b.csv --folds 5 -o e.json --report e.html");
+    const auto residuals = residuals_in("e.html");
+    ASSERT_EQ(residuals["images"].size(), 1U);  // of both boards
+    const auto& counts = residuals["images"][0]["counts"];
+    EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), 0UL),
+              residuals["readings"]["camera"].size());
     const auto accuracy = json_of("e.json")["accuracy"];
     ASSERT_EQ(accuracy["by_sensor"].size(), 2U);
     for (const auto& one : accuracy["by_sensor"]) {

@@ -10,8 +10,8 @@ const counts = (full) => Array.from({ length: 48 }, (unused, k) => full[k] ?? 0)
 /** Residuals of two cameras: two corners of the first one, one of the second. */
 const residualsOf = () => ({
   images: [
-    { rms_px: 0.5, size_px: [800, 600], columns: 8, counts: counts({ 0: 1, 47: 4 }) },
-    { rms_px: 0.1, size_px: [600, 800], columns: 6, counts: counts({ 7: 1 }) },
+    { name: 'camera 1', rms_px: 0.5, size_px: [800, 600], columns: 8, counts: counts({ 0: 1, 47: 4 }) },
+    { name: 'camera 2', rms_px: 0.1, size_px: [600, 800], columns: 6, counts: counts({ 7: 1 }) },
   ],
   readings: {
     camera: [0, 1, 0],
@@ -113,6 +113,16 @@ test('poses that were left out have their own colour where they are of the same 
   );
   assert.match(first.all('figcaption')[0].textContent, /^Camera 1: 2 corners in .*; 2 of other poses\. /);
   assert.equal(second.all('path', 'dots').length, 1);
+});
+
+test('cameras beside a tracker have their images', () => {
+  const corners = residualsOf();
+  const beside = { axes: ['x', 'y', 'z'], readings: { residual: [[1], [2], [3]] } };
+  const residuals = { ...beside, of_cameras: corners, validation: { ...beside, of_cameras: corners } };
+  assert.ok(isShown({ residuals }));
+  assert.ok(!isShown({ residuals: beside }));
+  const [first] = render({ document: {}, residuals }).all('figure');
+  assert.match(first.all('figcaption')[0].textContent, /^Camera 1: 2 corners in .*; 2 of other poses\. /);
 });
 
 test('a plan shows where corners are expected', () => {

@@ -108,6 +108,13 @@ struct PageConfigurations {
 struct PageImage {
     std::optional<ImageCoverage> coverage;  ///< nothing: the image's size is not stated
     double rms = 0;                         ///< lengths of the corners' residuals, px
+    std::string name{};                     ///< CameraImage::name
+};
+
+/// Where a reading is in which of the images.
+struct PageCorner {
+    Index image = 0;
+    std::array<double, 2> place{};  ///< px
 };
 
 /// Residuals of the measurements that a calibration was made with.
@@ -117,7 +124,10 @@ struct PageResiduals {
     std::vector<std::string> names;         ///< reading_names()
     Measurements measurements;
     std::vector<ReadingResidual> readings;
-    std::vector<PageImage> images{};  ///< one a camera; empty: no camera
+    std::vector<PageImage> images{};    ///< one a camera; empty: no camera
+    std::vector<PageCorner> corners{};  ///< one a reading, if there are images
+    /// Those of cameras beside sensors that measure otherwise, if there are any.
+    std::vector<PageResiduals> of_cameras{};
     /// "validation", "verification", "left_out": residuals of poses it was judged at.
     std::vector<std::pair<std::string, PageResiduals>> judged{};
     bool has_own_set_up = false;  ///< base or targets are others than those of the page's scene

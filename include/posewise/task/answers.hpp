@@ -71,7 +71,7 @@ struct Influence {
 /// Where in a camera's image corners of the board were seen. The image is cut into cells, 8 along
 /// its longer side and 6 along the other.
 struct ImageCoverage {
-    Index camera = 0;              ///< from 0
+    Index camera = 0;              ///< of its sensor, from 0
     std::array<double, 2> size{};  ///< width and height, px
     Index columns = 0;
     Index rows = 0;
@@ -80,6 +80,8 @@ struct ImageCoverage {
     /// The zones without a corner, out of nine: "top left", "top", ..., "middle". Outer zones are
     /// two cells wide.
     std::vector<std::string> empty;
+    std::string name{};             ///< CameraImage::name
+    std::optional<Index> sensor{};  ///< whose camera it is, of several sensors, from 0
 };
 
 /// An error, m, at a number of poses.

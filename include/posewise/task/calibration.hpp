@@ -291,6 +291,18 @@ std::vector<ReadingResidual> list_residuals(const Campaign& campaign, const Esti
 std::vector<ReadingResidual> list_residuals(const Campaign& campaign, const Parameters& parameters,
                                             const Measurements& measurements);
 
+/// A camera, and which targets are corners in its image.
+struct CameraImage {
+    Index camera = 0;               ///< of its sensor, from 0
+    std::optional<Index> sensor{};  ///< of several, from 0: the first with this camera
+    std::optional<std::array<double, 2>> size{};   ///< width and height, px
+    std::vector<std::pair<Index, Index>> targets;  ///< first and count, of each board
+    /// "camera 2", "sensor 2" or "camera 2 of sensor 3"; empty: there is one camera only.
+    std::string name{};
+};
+/// The cameras of a sensor or of several; empty: there are none.
+std::vector<CameraImage> camera_images(const Sensor& sensor);
+
 /// Which parts of its image each camera has seen corners in, all samples; only of cameras whose
 /// image has a stated size.
 std::vector<ImageCoverage> find_image_coverage(const Sensor& sensor,

@@ -77,10 +77,11 @@ Json metrics_to_json(const Metrics& metrics) {
 Json images_to_json(const std::vector<ImageCoverage>& images) {
     Json list = Json::array();
     for (const ImageCoverage& image : images) {
-        list.push_back({{"camera", image.camera + 1},
-                        {"size_px", image.size},
-                        {"covered", image.part},
-                        {"empty", image.empty}});
+        Json& one = list.emplace_back(Json{{"camera", image.camera + 1},
+                                           {"size_px", image.size},
+                                           {"covered", image.part},
+                                           {"empty", image.empty}});
+        if (image.sensor) one["sensor"] = *image.sensor + 1;
     }
     return list;
 }

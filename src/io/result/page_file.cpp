@@ -182,14 +182,13 @@ Json directions_to_json(const PageResiduals& residuals, double Direction::*part)
 /// Which camera each corner is seen by, from 0, and where.
 void add_places(Json& readings, const PageResiduals& residuals) {
     if (residuals.images.empty()) return;
-    const auto corners = std::ssize(residuals.names) / std::ssize(residuals.images);
-    readings["camera"] =
-        column_of(residuals, [&](const ReadingResidual& one) { return one.target / corners; });
-    for (Index axis = 0; axis < std::ssize(residuals.axes); ++axis) {
-        readings["place"].push_back(column_of(residuals, [&](const ReadingResidual& one) {
-            return in_hundredths(px *
-                                 residuals.measurements.observation(one.sample, one.target)(axis));
-        }));
+    readings["camera"] = Json::array();
+    readings["place"] = {Json::array(), Json::array()};
+    for (const PageCorner& corner : residuals.corners) {
+        readings["camera"].push_back(corner.image);
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            readings["place"][axis].push_back(in_hundredths(corner.place[axis]));
+        }
     }
 }
 
@@ -230,6 +229,7 @@ Json readings_to_json(const PageResiduals& residuals) {
 
 Json image_to_json(const PageImage& image) {
     Json json = Json::object();
+    if (!image.name.empty()) json["name"] = image.name;
     if (const auto& coverage = image.coverage) {
         json["size_px"] = coverage->size;
         json["columns"] = coverage->columns;
@@ -255,23 +255,34 @@ Json expected_to_json(const PageResiduals& expected) {
     return json;
 }
 
+/// Of readings that are only drawn: those of cameras, or of poses that were judged at.
+Json other_residuals_to_json(const PageResiduals& others) {
+    Json json = axes_to_json(others);
+    Json& readings = json["readings"];
+    readings["target"] = column_of(others, [](const ReadingResidual& one) { return one.target; });
+    readings["residual"] = columns_of(
+        others, [](const ReadingResidual& one) { return &one.calibrated; }, in_nm);
+    add_places(readings, others);
+    for (const PageResiduals& corners : others.of_cameras) {
+        json["of_cameras"] = other_residuals_to_json(corners);
+    }
+    return json;
+}
+
 Json residuals_to_json(const PagePart& part) {
     const PageResiduals& residuals = *part.residuals;
     Json json = axes_to_json(residuals);
     json["readings"] = readings_to_json(residuals);
+    for (const PageResiduals& corners : residuals.of_cameras) {
+        json["of_cameras"] = other_residuals_to_json(corners);
+    }
     for (const auto& [poses, others] : residuals.judged) {
-        json[poses] = axes_to_json(others);
-        Json& readings = json[poses]["readings"];
-        readings["target"] =
-            column_of(others, [](const ReadingResidual& one) { return one.target; });
-        readings["residual"] = columns_of(
-            others, [](const ReadingResidual& one) { return &one.calibrated; }, in_nm);
-        add_places(readings, others);
+        json[poses] = other_residuals_to_json(others);
         if (others.images.empty() || others.has_own_set_up) continue;
         const Measurements& measured = others.measurements;
         json[poses]["configurations"] =
             configurations_to_json(part, {measured.ids, measured.configurations});
-        readings["configuration"] =
+        json[poses]["readings"]["configuration"] =
             column_of(others, [](const ReadingResidual& one) { return one.configuration; });
     }
     return json;
@@ -364,27 +375,66 @@ std::string make_page(const std::vector<PagePart>& parts, const std::vector<std:
     return fill_template(detail::page_template(), escape_for_script(text));
 }
 
-std::vector<PageImage> page_images(const Sensor& sensor, const Measurements& measurements,
-                                   const std::vector<ReadingResidual>& readings) {
-    std::vector<PageImage> images;
-    const auto* const cameras = dynamic_cast<const CameraSensor*>(&sensor);
-    if (cameras == nullptr) return images;
-    images.resize(static_cast<std::size_t>(cameras->camera_count()));
-    for (const ImageCoverage& one : find_image_coverage(sensor, measurements)) {
-        images[static_cast<std::size_t>(one.camera)].coverage = one;
-    }
-    std::vector<Index> counts(images.size());
-    for (const ReadingResidual& one : readings) {
-        const auto camera = static_cast<std::size_t>(one.target / cameras->corner_count());
-        images[camera].rms += one.calibrated.squaredNorm();
-        ++counts[camera];
-    }
-    for (std::size_t c = 0; c < images.size(); ++c) {
-        if (counts[c] > 0) {
-            images[c].rms = px * std::sqrt(images[c].rms / static_cast<double>(counts[c]));
+/// Of each target which image it is a corner in; -1: it is none.
+std::vector<Index> image_of_targets(const std::vector<CameraImage>& images, Index targets) {
+    std::vector<Index> image_of(static_cast<std::size_t>(targets), -1);
+    for (Index k = 0; k < std::ssize(images); ++k) {
+        for (const auto& [first, count] : images[static_cast<std::size_t>(k)].targets) {
+            std::fill_n(image_of.begin() + first, count, k);
         }
     }
-    return images;
+    return image_of;
+}
+
+/// Adds the images to residuals of corners.
+void add_images(const Sensor& sensor, const std::vector<CameraImage>& cameras,
+                PageResiduals& residuals) {
+    const Measurements& measured = residuals.measurements;
+    const std::vector<Index> image_of = image_of_targets(cameras, sensor.target_count());
+    for (const CameraImage& camera : cameras) residuals.images.push_back({{}, 0, camera.name});
+    std::size_t covered = 0;
+    const std::vector<ImageCoverage> coverages = find_image_coverage(sensor, measured);
+    for (std::size_t k = 0; k < cameras.size(); ++k) {
+        if (cameras[k].size) residuals.images[k].coverage = coverages[covered++];
+    }
+    std::vector<Index> counts(cameras.size());
+    for (const ReadingResidual& one : residuals.readings) {
+        const Index image = image_of[static_cast<std::size_t>(one.target)];
+        const Vector2d place =
+            px * measured.observations.row(one.sample).segment<2>(sensor.first_row(one.target));
+        residuals.corners.push_back({image, {place.x(), place.y()}});
+        residuals.images[static_cast<std::size_t>(image)].rms += one.calibrated.squaredNorm();
+        ++counts[static_cast<std::size_t>(image)];
+    }
+    for (std::size_t k = 0; k < counts.size(); ++k) {
+        double& rms = residuals.images[k].rms;
+        if (counts[k] > 0) rms = px * std::sqrt(rms / static_cast<double>(counts[k]));
+    }
+}
+
+/// Of several sensors those readings that all have the same axes, and those of cameras.
+void split_by_axes(const Sensor& sensor, const std::vector<CameraImage>& cameras,
+                   PageResiduals& residuals) {
+    const auto axes = static_cast<std::size_t>(sensor.has_lengths() ? sensor.lengths_per_target()
+                                                                    : sensor.rows_per_target());
+    residuals.axes.resize(axes);
+    residuals.units.assign(axes, &sensor.main_units());
+    const auto is_other = [&](const ReadingResidual& one) {
+        return sensor.rows_of(one.target) != static_cast<Index>(axes) ||
+               sensor.is_angle(sensor.first_row(one.target)) == sensor.has_lengths();
+    };
+    if (!cameras.empty() && sensor.has_lengths()) {
+        PageResiduals corners = residuals;
+        corners.axes = {"u", "v"};
+        corners.units.assign(2, &pixel_units);
+        const std::vector<Index> image_of = image_of_targets(cameras, sensor.target_count());
+        std::erase_if(corners.readings, [&](const ReadingResidual& one) {
+            return image_of[static_cast<std::size_t>(one.target)] < 0;
+        });
+        add_images(sensor, cameras, corners);
+        residuals.of_cameras.push_back(std::move(corners));
+    }
+    std::erase_if(residuals.readings, is_other);
 }
 
 }  // namespace
@@ -399,26 +449,20 @@ PageResiduals page_residuals(const Campaign& campaign, const Measurements& measu
                             {},
                             {}};
     const Sensor& sensor = *campaign.sensor;
-    if (sensor.is_combined()) {  // those that all have the same axes
-        const auto axes = static_cast<std::size_t>(
-            sensor.has_lengths() ? sensor.lengths_per_target() : sensor.rows_per_target());
-        residuals.axes.resize(axes);
-        residuals.units.assign(axes, &sensor.main_units());
-        std::erase_if(residuals.readings, [&](const ReadingResidual& one) {
-            return sensor.rows_of(one.target) != static_cast<Index>(axes) ||
-                   sensor.is_angle(sensor.first_row(one.target)) == sensor.has_lengths();
-        });
-        return residuals;
+    const std::vector<CameraImage> cameras = camera_images(sensor);
+    if (sensor.is_combined()) {
+        split_by_axes(sensor, cameras, residuals);
+    } else {
+        for (Index row = 0; row < sensor.rows_per_target(); ++row) {
+            residuals.units.push_back(&sensor.units(sensor.is_angle(row)));
+        }
     }
-    for (Index row = 0; row < sensor.rows_per_target(); ++row) {
-        residuals.units.push_back(&sensor.units(sensor.is_angle(row)));
-    }
-    residuals.images = page_images(*campaign.sensor, measurements, residuals.readings);
+    if (!cameras.empty() && !sensor.has_lengths()) add_images(sensor, cameras, residuals);
     return residuals;
 }
 
 std::optional<PageResiduals> page_expected(const Campaign& campaign, const Plan& plan) {
-    if (dynamic_cast<const CameraSensor*>(campaign.sensor.get()) == nullptr) return std::nullopt;
+    if (camera_images(*campaign.sensor).empty()) return std::nullopt;
     const Measurements expected = expected_readings(campaign, plan);
     std::vector<ReadingResidual> readings;
     for (Index i = 0; i < expected.configuration_count(); ++i) {
@@ -428,7 +472,8 @@ std::optional<PageResiduals> page_expected(const Campaign& campaign, const Plan&
             one.target = target;
         }
     }
-    return page_residuals(campaign, expected, std::move(readings));
+    PageResiduals shown = page_residuals(campaign, expected, std::move(readings));
+    return shown.of_cameras.empty() ? shown : shown.of_cameras.front();
 }
 
 std::string to_json(const std::vector<PagePart>& parts) {

@@ -8,9 +8,12 @@ import { legend } from '../draw/legend.js';
 
 export const title = 'Image';
 
+/** Corners in images: all residuals there are, or those of cameras beside other sensors. */
+const ofCameras = (of) => of?.of_cameras ?? of;
+
 const hasPlaces = (of) => of?.images?.length > 0 && of.readings?.place !== undefined;
 
-export const isShown = ({ residuals, expected }) => hasPlaces(residuals) || hasPlaces(expected);
+export const isShown = ({ residuals, expected }) => hasPlaces(ofCameras(residuals)) || hasPlaces(expected);
 
 /** Corners that a camera has seen or, of a plan, shall see, and their residuals, px. */
 export function cornersOf({ readings: { camera, place, residual } }, index) {
@@ -22,10 +25,11 @@ export function cornersOf({ readings: { camera, place, residual } }, index) {
 const sizeOf = (image, corners) => image.size_px ?? [Math.max(1, ...corners.map(({ u }) => u)), Math.max(1, ...corners.map(({ v }) => v))];
 
 /** Those of other poses are of the same image if it is as large. */
-function setsOf(residuals, index) {
+function setsOf(all, index) {
+  const residuals = ofCameras(all);
   const isSame = (others) => others?.readings.place !== undefined && String(others.images[index]?.size_px) === String(residuals.images[index].size_px);
   return kinds
-    .map(([key, label, colour]) => [key === 'residuals' ? residuals : residuals[key], label, colour])
+    .map(([key, label, colour]) => [ofCameras(key === 'residuals' ? all : all[key]), label, colour])
     .filter(([of]) => isSame(of))
     .map(([of, label, colour]) => ({ label, colour, kind: 'dots', corners: cornersOf(of, index) }))
     .filter(({ corners }) => corners.length > 0);
@@ -45,7 +49,7 @@ function cellTable(caption, { size_px: size, columns, counts }) {
 
 const cellsIn = ({ size_px: size, columns, counts }) => (counts ? cellsOf(size, columns, counts) : []);
 
-const nameOf = (images, index) => (images.length > 1 ? `Camera ${index + 1}: ` : '');
+const nameOf = ({ name }) => (name ? `${name.slice(0, 1).toUpperCase()}${name.slice(1)}: ` : '');
 
 const describe = (image, size) => (image.size_px ? `an image of ${size.map((one) => short(one)).join(' x ')} px` : 'an image whose size is not stated');
 
@@ -54,7 +58,7 @@ function expectedFigure(expected, index) {
   const image = expected.images[index];
   const corners = cornersOf(expected, index);
   const size = sizeOf(image, corners);
-  const label = `${nameOf(expected.images, index)}${count(corners.length, 'corner')} expected in ${describe(image, size)}`;
+  const label = `${nameOf(image)}${count(corners.length, 'corner')} expected in ${describe(image, size)}`;
   return figure(
     `${label}, if the robot is as the campaign states it. The greyer a cell, the more corners it has.`,
     drawImage({ label, size, cells: cellsIn(image), sets: [{ corners, colour: 'accent' }], times: 1 }),
@@ -62,9 +66,10 @@ function expectedFigure(expected, index) {
   );
 }
 
-function imageFigure(residuals, index) {
+function imageFigure(all, index) {
+  const residuals = ofCameras(all);
   const image = residuals.images[index];
-  const sets = setsOf(residuals, index);
+  const sets = setsOf(all, index);
   const size = sizeOf(
     image,
     sets.flatMap(({ corners }) => corners),
@@ -75,7 +80,7 @@ function imageFigure(residuals, index) {
   scale.style.setProperty('width', `${(100 * bar * times) / size[0]}%`);
   const used = cornersOf(residuals, index).length;
   const others = sets.reduce((sum, { corners }) => sum + corners.length, -used);
-  const label = `${nameOf(residuals.images, index)}${count(used, 'corner')} in ${describe(image, size)}, ${fixed(image.rms_px, 2)} px RMS off the place predicted`;
+  const label = `${nameOf(image)}${count(used, 'corner')} in ${describe(image, size)}, ${fixed(image.rms_px, 2)} px RMS off the place predicted`;
   return figure(
     `${label}${others > 0 ? `; ${others} of other poses` : ''}. A dot is where a corner was seen; the line is its residual, from the place predicted towards the one seen, drawn ${short(times)} times as long. The greyer a cell, the more corners were calibrated with.`,
     el(
@@ -98,7 +103,7 @@ export function render({ document, residuals, expected }) {
     el(
       'div',
       { class: 'figures' },
-      hasPlaces(residuals) ? residuals.images.map((unused, k) => imageFigure(residuals, k)) : expected.images.map((unused, k) => expectedFigure(expected, k)),
+      hasPlaces(ofCameras(residuals)) ? ofCameras(residuals).images.map((unused, k) => imageFigure(residuals, k)) : expected.images.map((unused, k) => expectedFigure(expected, k)),
     ),
   );
 }
