@@ -98,6 +98,15 @@ void fit(const Campaign& campaign, const Measurements& measurements, Register re
     reading.misfit = std::hypot(metrics.distance_rms, lever * metrics.orientation_rms);
 }
 
+/// What fits has converged by then; what does not would go on for long. What the model's error is
+/// hardly moves base and targets.
+Registration register_quickly(const Campaign& campaign, const Measurements& measurements) {
+    LevenbergMarquardtOptions options;
+    options.iteration_limit = 30;
+    options.finds_model_error = false;
+    return register_base_and_targets(campaign, measurements, options);
+}
+
 Index changes_of(const FittedReading& reading) { return count_changes(reading.changes); }
 
 /// Registers them with polish, some at a time and the best first: where what is polished leaves far
@@ -112,7 +121,7 @@ void polish(const std::span<FittedReading>& readings, const Campaign& campaign,
         for_each_index(std::ssize(some), [&](Index k) {
             FittedReading& reading = some[static_cast<std::size_t>(k)];
             const bool is_near = begin == 0 || !(reading.misfit > hopeless * best);
-            if (is_near) fit(campaign, measurements, register_base_and_targets, reading);
+            if (is_near) fit(campaign, measurements, register_quickly, reading);
             counter.count();
         });
         best = std::min(best, std::ranges::min(some, {}, &FittedReading::misfit).misfit);

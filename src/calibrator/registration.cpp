@@ -4,6 +4,7 @@
 #include "core/text.hpp"
 #include "least_squares.hpp"
 #include "linear_registration.hpp"
+#include "measurement/contact.hpp"
 #include "measurement/known_sensor.hpp"
 #include "model/sampling.hpp"
 #include "part_alone.hpp"
@@ -168,7 +169,8 @@ Start solve_linear(const Campaign& campaign, const ObservedPoints& observed,
 }
 
 Start find_start(const Campaign& campaign, const Measurements& measurements);
-Registration polish(const Campaign& campaign, const Measurements& measurements, const Start& start);
+Registration polish(const Campaign& campaign, const Measurements& measurements, const Start& start,
+                    const LevenbergMarquardtOptions& options = {});
 
 /// "sensor 2 (corners)".
 std::string name_of(const CombinedSensor& combined, Index part) {
@@ -291,11 +293,11 @@ std::vector<Index> find_near(const Campaign& campaign, const Measurements& measu
 }
 
 /// On the true residuals of the start's configurations, then of all that are near.
-Registration polish(const Campaign& campaign, const Measurements& measurements,
-                    const Start& start) {
+Registration polish(const Campaign& campaign, const Measurements& measurements, const Start& start,
+                    const LevenbergMarquardtOptions& options) {
     const std::vector<Index>& by = start.configurations;
     const auto polish_by = [&](const Measurements& some, const Parameters& from) {
-        Estimate polished = identify(campaign, some, from);
+        Estimate polished = identify(campaign, some, from, options);
         return Registration{std::move(polished.parameters), std::move(polished.undetermined)};
     };
     if (by.empty() || std::ssize(by) == measurements.configuration_count()) {
@@ -339,11 +341,16 @@ Registration register_roughly(const Campaign& campaign, const Measurements& meas
 }
 
 Registration register_base_and_targets(const Campaign& campaign, const Measurements& measurements) {
+    return register_base_and_targets(campaign, measurements, {});
+}
+
+Registration register_base_and_targets(const Campaign& campaign, const Measurements& measurements,
+                                       const LevenbergMarquardtOptions& options) {
     const Campaign expected = with_expected_robot(campaign);
     const Start start = find_start(expected, measurements);
     Registration registered = start;
     if (registered.is_determined()) {
-        registered = polish(expected, measurements, start);
+        registered = polish(expected, measurements, start, options);
     }
     const auto& prior = campaign.prior;
     if (!registered.is_determined() && prior && can_begin_at(*prior, campaign)) {
@@ -365,13 +372,19 @@ Index least_calibration_count(const Campaign& campaign, const StopSignal& stop) 
     const std::optional<ObservedPoints> observed = nominal.sensor->observed_points();
     if (!observed) return least;
     constexpr std::uint64_t seed = 20152;  // any: it only has to be the same every time
+    // More than as many as there are unknowns do not help: what is open then is open always.
+    const Index most = least + 12 + observed->points.unknown_count();
+    RowMatrixXd in_view;  // of a camera poses that show nothing tell nothing
+    if (nominal.sensor->has_view()) {
+        in_view = detail::viewed_poses(nominal, nominal.nominal, most, seed).configurations;
+    }
     const auto are_enough = [&](Index count) {
-        const auto drawn = detail::random_configurations(nominal.robot, count, seed);
+        const RowMatrixXd drawn = in_view.rows() > 0
+                                      ? RowMatrixXd(in_view.topRows(count))
+                                      : detail::random_configurations(nominal.robot, count, seed);
         const auto measured = simulate_measurements(nominal, nominal.nominal, drawn, 1, seed);
         return register_roughly(nominal, measured).is_determined();
     };
-    // More than as many as there are unknowns do not help: what is open then is open always.
-    const Index most = least + 12 + observed->points.unknown_count();
     for (Index count = least; count < most; ++count) {
         if (count > least) stop.check("finding how many poses register base and targets");
         if (are_enough(count)) return count;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "cell_check.hpp"
 #include "contact.hpp"
@@ -466,7 +467,12 @@ std::string describe_unchecked_bodies(const Campaign& campaign) {
 }
 
 double joint_distance(const VectorXd& a, const VectorXd& b) {
-    return (a - b).cwiseAbs().maxCoeff();
+    constexpr double pi = std::numbers::pi;
+    const auto apart = [](double difference) {
+        return std::abs(std::abs(difference) > pi ? std::remainder(difference, 2 * pi)
+                                                  : difference);
+    };
+    return (a - b).unaryExpr(apart).maxCoeff();
 }
 
 }  // namespace posewise

@@ -75,8 +75,10 @@ RowMatrixXd rows_of(const DesignSpace& space, const HeldPoses& held, const RowMa
 }
 
 bool is_apart(const RowMatrixXd& poses, const Eigen::RowVectorXd& q, double distance) {
-    return poses.rows() == 0 ||
-           (poses.rowwise() - q).cwiseAbs().rowwise().maxCoeff().minCoeff() >= distance;
+    for (const auto pose : poses.rowwise()) {
+        if (joint_distance(pose, q) < distance) return false;
+    }
+    return true;
 }
 
 void check_all_is_seen(const DesignSpace& space, const RowMatrixXd& rows) {

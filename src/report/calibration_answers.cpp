@@ -135,6 +135,9 @@ std::string sum_up(const Calibration& calibration, const Judged& judged, const A
     text += fmt::format(" {}", judged.where) + describe_others(calibration, judged);
     if (calibration.campaign.robot.parameter_count() == 0) {
         text += "; the robot is taken as it is";
+    } else if (judged.group && judged.group->nominal) {
+        text += fmt::format("; before {}", format_error(*judged.group->nominal, judged.units));
+        if (judged.group->is_no_better()) text += ", which is no worse";
     } else if (&judged.units == &units) {
         text += fmt::format("; before {}{}", format_error(nominal, units),
                             judged.group ? " at the poses calibrated with" : "");

@@ -146,7 +146,8 @@ void describe_views(const std::vector<ViewDoubt>& views, const std::string& at,
     }
 }
 
-void describe_camera(const CameraDoubt& doubt, const std::string& where,
+/// `fits`: the robot stated does; else a lens that is found tells nothing of the image.
+void describe_camera(const CameraDoubt& doubt, bool fits, const std::string& where,
                      std::vector<std::string>& sentences) {
     const std::string at =
         where + (doubt.sensor > 0 ? fmt::format("sensor {}: ", doubt.sensor) : "");
@@ -173,12 +174,20 @@ void describe_camera(const CameraDoubt& doubt, const std::string& where,
             (*point)[1], doubt.is_of_image ? "the image" : "what is seen", doubt.middle[0],
             doubt.middle[1]));
     }
-    if (const auto& focal = doubt.focal_lengths) {
+    const std::string of_camera =
+        doubt.camera > 0 ? fmt::format(" of camera {}", doubt.camera + 1) : "";
+    if (const auto& stated = doubt.stated_focal_lengths; stated && fits) {
+        sentences.push_back(fmt::format(
+            "{}the focal lengths found{} are {:.0f} and {:.0f} px, not about {:.0f} and {:.0f} px "
+            "as stated: are the intrinsics and image_px of this image, not of one of another size? "
+            "Poses are planned by them",
+            at, of_camera, (*doubt.focal_lengths)[0], (*doubt.focal_lengths)[1], (*stated)[0],
+            (*stated)[1]));
+    } else if (const auto& focal = doubt.focal_lengths; focal && !stated) {
         sentences.push_back(fmt::format(
             "{}the focal lengths found{} are {:.0f} and {:.0f} px, as of a mirrored image: are the "
             "columns u and v exchanged, or the corners numbered in mirrored order?",
-            at, doubt.camera > 0 ? fmt::format(" of camera {}", doubt.camera + 1) : "", (*focal)[0],
-            (*focal)[1]));
+            at, of_camera, (*focal)[0], (*focal)[1]));
     }
     if (doubt.scatter > 0) {
         sentences.push_back(fmt::format(
@@ -215,6 +224,30 @@ std::string describe_held_out(const Campaign& campaign, const HeldOutComparison&
         detail::format_error(held_out.nominal, units));
 }
 
+/// Of poses that were judged at: that they are missed by no less than before, and one that has
+/// nearly all of what they are missed by.
+void add_judged(const std::optional<Judgement>& judged, const char* which,
+                std::vector<std::string>& sentences) {
+    constexpr double plainly = 2;
+    if (!judged || judged->moved) return;
+    for (const JudgedGroup& group : judged->groups) {
+        if (group.is_no_better() && group.group != PoseGroup::Repeated) {
+            sentences.push_back(fmt::format(
+                "{}: missed by {}, by the nominal robot by {}: the calibration gains nothing there",
+                which, detail::format_error(group.found.rms(), *judged->units),
+                detail::format_error(*group.nominal, *judged->units)));
+        }
+        const auto& worst = group.worst;
+        if (!worst || !(group.found.rms() > plainly * worst->without)) continue;
+        sentences.push_back(fmt::format(
+            "{}: most of what they are missed by is of {}: {} with it, {} without; is its reading "
+            "right?",
+            which, detail::quote(worst->id),
+            detail::format_error(group.found.rms(), *judged->units),
+            detail::format_error(worst->without, *judged->units)));
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> describe_doubts(const Calibration& calibration,
@@ -228,7 +261,7 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     }
     if (!doubts.planes.empty()) sentences.push_back(at + describe_planes(doubts.planes));
     describe_views(doubts.views, at, sentences);
-    if (doubts.camera) describe_camera(*doubts.camera, at, sentences);
+    if (doubts.camera) describe_camera(*doubts.camera, !doubts.misfit, at, sentences);
     if (!doubts.places.empty() && !has_moved)
         sentences.push_back(at + describe_places(doubts.places));
     if (doubts.gross_error && !has_moved) {
@@ -279,6 +312,10 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     };
     add_others(calibration.verification, "the poses to verify");
     add_others(calibration.left_out, "the poses not in the plan");
+    if (!calibration.moved)
+        add_judged(calibration.validation, "poses of the validation", sentences);
+    add_judged(calibration.verification, "poses to verify", sentences);
+    add_judged(calibration.left_out, "poses not in the plan", sentences);
     for (const std::string& sentence :
          detail::describe_look(doubts.look, calibration.cures, calibration.campaign)) {
         sentences.push_back(at + sentence);

@@ -41,6 +41,25 @@ TEST(HandEye, IsKnowableWhereFewPosesShowTheBoard) {
     EXPECT_EQ(find_identifiable(campaign).kept.size(), 12U);
 }
 
+/// A few of the robot's poses show the board to a camera that stands still: how many are enough is
+/// counted of those.
+TEST(HandEye, TakesAFewViewsHoweverFewPosesShowTheBoard) {
+    const io::CampaignFile campaign = testing::campaign_from(
+        "name: fixed\nrobot:\n  errors: none\n" + testing::small_arm + R"(sensor:
+  kind: camera
+  camera: fixed
+  image_px: [1280, 960]
+  sigma_px: 0.3
+  intrinsics: {fx_px: 900, fy_px: 900, cx_px: 655, cy_px: 470}
+  board: {columns: 8, rows: 5, square_mm: 25}
+  place: {position_mm: [-80, -50, 40], rpy_deg: [90, 0, 0]}
+  view: {most_tilt_deg: 55, least_corners: 20}
+base: {position_mm: [0, 900, 1800], rpy_deg: [-90, 0, 90]}
+)");
+    EXPECT_EQ(least_calibration_count(campaign), 3);
+    EXPECT_EQ(least_calibration_count(hand_eye()), 3);
+}
+
 /// From 5 m below the table the camera sees the back of its board.
 TEST(HandEye, SaysWhereNoPoseShowsTheBoard) {
     const io::CampaignFile campaign = hand_eye(5000);

@@ -121,7 +121,8 @@ TEST_F(CombinedSensors, MayBeOneCameraBeforeTwoBoards) {
     const auto residuals = residuals_in("e.html");
     ASSERT_EQ(residuals["images"].size(), 1U);  // of both boards
     const auto& counts = residuals["images"][0]["counts"];
-    EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), 0UL),
+    const auto of_cells = counts.get<std::vector<std::size_t>>();
+    EXPECT_EQ(std::accumulate(of_cells.begin(), of_cells.end(), 0UL),
               residuals["readings"]["camera"].size());
     const auto accuracy = json_of("e.json")["accuracy"];
     ASSERT_EQ(accuracy["by_sensor"].size(), 2U);

@@ -76,7 +76,12 @@ TEST_F(VerificationPoses, OneThatWasMisreadIsNamedAndPosesOfThePlanMayBeMissing)
     row.replace(row.rfind(','), std::string::npos, ",0");
     write_text("zero.csv", measured.substr(0, begin) + row + measured.substr(end));
     const std::string calibrate = "calibrate " + fanuc_design + " --plan p.json --folds 0 -m ";
-    const std::string text = run_well(calibrate + "zero.csv -o z.json");
+    const Outcome misread = run(calibrate + "zero.csv -o z.json");
+    EXPECT_EQ(misread.code, 0) << misread.err;
+    EXPECT_NE(misread.err.find("poses to verify: most of what they are missed by is of 'v1': "),
+              std::string::npos)
+        << misread.err;
+    const std::string& text = misread.out;
     EXPECT_NE(text.find("beyond chance (up to"), std::string::npos) << text;
     EXPECT_NE(text.find("most of it is of 'v1', the others have 0."), std::string::npos) << text;
     EXPECT_EQ(json_of("z.json").at("accuracy").at("judged").at(0).at("worst"), "v1");

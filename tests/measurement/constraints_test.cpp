@@ -292,6 +292,8 @@ TEST(Constraints, RejectCellsThatContradictThemselves) {
 
 TEST(JointDistance, IsTheLargestDifferenceOfAJoint) {
     EXPECT_DOUBLE_EQ(joint_distance(angles(10, -20), angles(40, 0)), 30 * degree);
+    EXPECT_NEAR(joint_distance(angles(10, 179), angles(11, -178)), 3 * degree, 1e-12);
+    EXPECT_NEAR(joint_distance(angles(375, 0), angles(10, 0)), 5 * degree, 1e-12);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "posewise/calibrator/identification.hpp"
 #include "posewise/core/errors.hpp"
@@ -335,6 +336,34 @@ TEST(CameraDoubt, NamesAMirroredImageWhereTheLensIsFound) {
     ASSERT_TRUE(doubt);
     ASSERT_TRUE(doubt->focal_lengths);
     EXPECT_LT((*doubt->focal_lengths)[0], 0);
+}
+
+/// An image of half the size, where the lens is found and only plans need the one that is stated.
+TEST(CameraDoubt, NamesFocalLengthsFarFromThoseStated) {
+    CameraSetup setup = fixed_camera();
+    setup.is_known.assign(setup.intrinsics.names().size(), false);
+    const auto& [campaign, measured] = views_of(setup);
+    const auto right = find_camera_doubt(campaign, measured, registered(campaign, measured));
+    EXPECT_FALSE(right && right->focal_lengths);
+    Measurements half = measured;
+    half.observations *= 0.5;
+    const auto doubt = find_camera_doubt(campaign, half, registered(campaign, half));
+    ASSERT_TRUE(doubt);
+    const Intrinsics& stated = setup.intrinsics;
+    EXPECT_EQ(doubt->stated_focal_lengths, (std::array<double, 2>{stated.fx, stated.fy}));
+    EXPECT_NEAR((*doubt->focal_lengths)[0], 0.5 * stated.fx, 0.02 * stated.fx);
+}
+
+TEST(PlaceDoubts, NameABoardThatIsTurnedAgainstItsStatedPlace) {
+    const auto& [campaign, measured] = good();
+    Parameters found = registered(campaign, measured);
+    EXPECT_TRUE(find_place_doubts(campaign, found).empty());
+    Campaign turned = campaign;
+    turned.nominal.sensor[5] += std::numbers::pi / 2;
+    const std::vector<PlaceDoubt> doubts = find_place_doubts(turned, found);
+    ASSERT_EQ(doubts.size(), 1U);
+    EXPECT_EQ(doubts.front().name, "sensor.place");
+    EXPECT_GT(doubts.front().turn, 1);
 }
 
 TEST(Misfit, NamesImageAxesThatWereExchanged) {

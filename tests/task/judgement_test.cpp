@@ -26,10 +26,12 @@ struct Example {
     Measurements measure(const RowMatrixXd& configurations, std::uint64_t seed) const {
         return simulate_measurements(campaign, simulated.truth, configurations, 1, seed);
     }
-    Judgement judge(const Measurements& others) const {
+    Judgement judge(const Measurements& others,
+                    const std::vector<std::string>& refitted = {}) const {
         CalibrationOptions options;
         options.folds = 0;
         options.validation = &others;
+        options.refitted = refitted;
         return calibrate(campaign, simulated.measurements, options).validation.value();
     }
 };
@@ -195,6 +197,23 @@ TEST(Judgement, HasTheRmsOverTheWorkspaceInItsIntervalNineteenTimesInTwenty) {
     }
 }
 
+TEST(Judgement, ComparesWithTheNominalRobotThatIsFittedAlike) {
+    const Example example;
+    const RowMatrixXd fresh = 0.95 * example.simulated.measurements.configurations.topRows(10);
+    const std::vector<std::string> refitted{"base", "targets"};
+    for (const auto& parts : {std::vector<std::string>{}, refitted}) {
+        const JudgedGroup judged = example.judge(example.measure(fresh, 5), parts).groups.front();
+        EXPECT_GT(*judged.nominal, 2 * judged.found.rms());
+        EXPECT_FALSE(judged.is_no_better());
+    }
+    // Measured of a robot that has no errors.
+    const Campaign& campaign = example.campaign;
+    const Measurements other = simulate_measurements(campaign, campaign.nominal, fresh, 1, 5);
+    const JudgedGroup judged = example.judge(other, refitted).groups.front();
+    EXPECT_LT(*judged.nominal, 2e-4);
+    EXPECT_TRUE(judged.is_no_better());
+}
+
 TEST(Calibrate, JudgesPosesToVerifyByThemselves) {
     const Example example(30);
     CalibrationOptions options;
@@ -207,6 +226,7 @@ TEST(Calibrate, JudgesPosesToVerifyByThemselves) {
     EXPECT_EQ(result.measured.configurations, 16);
     EXPECT_EQ(result.verification->found.point_count, 10 * 2 * 3);
     EXPECT_EQ(result.left_out->found.point_count, 4 * 2 * 3);
+    EXPECT_GT(result.verification->groups.front().nominal, result.verification->found.rms());
     EXPECT_EQ(result.limit, 1e-3);
     // They are not calibrated with.
     options.verification.clear();

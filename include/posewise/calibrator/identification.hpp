@@ -33,6 +33,11 @@ struct Registration {
 /// are needed and not stated, or for measurements that do not fit the campaign.
 Registration register_base_and_targets(const Campaign& campaign, const Measurements& measurements);
 
+struct LevenbergMarquardtOptions;
+/// As above, polished so.
+Registration register_base_and_targets(const Campaign& campaign, const Measurements& measurements,
+                                       const LevenbergMarquardtOptions& options);
+
 /// As above without the polish, and without an earlier estimate.
 Registration register_roughly(const Campaign& campaign, const Measurements& measurements);
 

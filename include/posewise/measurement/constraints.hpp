@@ -160,7 +160,8 @@ class Constraints {
 /// with its values; empty if there is none.
 std::string describe_violation(const Constraints& constraints, const VectorXd& q, Stop stop);
 
-/// Largest joint difference between two configurations, rad or m.
+/// Largest joint difference between two configurations, rad or m. Whole turns are none: a joint is
+/// where it was.
 double joint_distance(const VectorXd& a, const VectorXd& b);
 
 /// How many candidates a constraint removed.

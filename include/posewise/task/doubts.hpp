@@ -364,8 +364,9 @@ struct CameraDoubt {
     std::optional<std::array<double, 2>> principal_point{};
     std::array<double, 2> middle{};
     bool is_of_image = false;  ///< whose size is stated; else the middle of what is seen
-    /// Focal lengths found, px, if one is negative.
+    /// Focal lengths found, px, if one is negative, or half as long again as those stated.
     std::optional<std::array<double, 2>> focal_lengths{};
+    std::optional<std::array<double, 2>> stated_focal_lengths{};  ///< in the second case
     /// Most views show a plane board from behind its stated front.
     bool is_seen_from_back = false;
     /// Standard deviation of u and of v about any pose of the board, px, if it is another one than

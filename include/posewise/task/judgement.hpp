@@ -130,9 +130,14 @@ struct JudgedGroup {
     double chance = 1;
     ChanceVerdict verdict = ChanceVerdict::NotJudged;
     std::optional<WorstConfiguration> worst;
+    /// RMS of the nominal robot there, base and targets fitted to what they were fitted to for
+    /// `found`.
+    std::optional<double> nominal;
 
     /// Found / expected.
     double ratio() const { return found.rms() / expected.value().total(); }
+    /// Whether nothing was gained there.
+    bool is_no_better() const { return nominal && found.rms() >= *nominal; }
 };
 
 /// All poses of one kind, and their groups, in the order of PoseGroup.

@@ -165,11 +165,17 @@ class ContentReader {
         content_.moved.push_back({id, joint, change[joint]});
     }
 
+    /// Poses that are not visited, by no other name either.
     void find_dropped() {
         if (!sent_) return;
+        const auto is_visited = [&](const std::string& id) {
+            return visits_.contains(id) ||
+                   std::ranges::any_of(content_.again,
+                                       [&](const auto& one) { return one.second == id; });
+        };
         for (const auto* poses : {&sent_->poses, &sent_->verification}) {
             for (const PlannedPose& pose : *poses) {
-                if (!visits_.contains(pose.id)) content_.dropped.push_back(pose.id);
+                if (!is_visited(pose.id)) content_.dropped.push_back(pose.id);
             }
         }
     }

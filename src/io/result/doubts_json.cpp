@@ -84,6 +84,9 @@ Json camera_to_json(const CameraDoubt& doubt) {
     if (doubt.focal_lengths) {
         json["camera"] = doubt.camera + 1;
         json["focal_lengths_px"] = *doubt.focal_lengths;
+        if (const auto& stated = doubt.stated_focal_lengths) {
+            json["stated_focal_lengths_px"] = *stated;
+        }
     }
     if (doubt.is_seen_from_back) json["is_seen_from_back"] = true;
     if (doubt.scatter > 0) {

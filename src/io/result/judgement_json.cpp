@@ -33,6 +33,7 @@ Json group_to_json(const Calibration& calibration, const char* poses, const Judg
     }
     const bool is_judged = group.verdict != ChanceVerdict::NotJudged;
     json["verdict"] = is_judged ? Json(chances.at(group.verdict)) : Json(nullptr);
+    if (group.nominal) json["nominal" + unit] = mm * *group.nominal;
     if (group.worst) {
         json["worst"] = group.worst->id;
         json["rms_without_worst" + unit] = mm * group.worst->without;

@@ -301,6 +301,32 @@ void find_moved_since(const Work& work, Calibration& result) {
     if (!moved->parts.empty()) result.moved_since = moved;
 }
 
+/// Base and targets fitted to what was calibrated with; nothing: the robot is taken as it is.
+std::optional<detail::NominalRobot> fit_nominal(const Work& work) {
+    if (work.campaign.robot.parameter_count() == 0) return std::nullopt;
+    const Registration registered = register_base_and_targets(work.campaign, work.used);
+    return detail::fit_nominal_robot(work.campaign, work.whole.robot, work.used,
+                                     registered.parameters, work.beside());
+}
+
+/// With the same parts refitted to the validation as the calibrated robot has.
+std::optional<detail::NominalRobot> fit_nominal_to_validation(const Work& work,
+                                                              const Campaign& campaign) {
+    auto nominal = fit_nominal(work);
+    if (!nominal || work.options.refitted.empty()) return nominal;
+    Estimate before;
+    before.parameters = nominal->parameters();
+    nominal->campaign = with_robot(campaign, without_parameters(campaign.robot));
+    nominal->fitted = detail::refit_parts({work.beside(), true}, nominal->campaign, before,
+                                          *work.options.validation, work.options.refitted);
+    if (!nominal->fitted.undetermined.empty()) return std::nullopt;
+    return nominal;
+}
+
+const detail::NominalRobot* pointer_to(const std::optional<detail::NominalRobot>& nominal) {
+    return nominal ? &*nominal : nullptr;
+}
+
 /// On the measurements of the validation.
 void validate(const Work& work, Calibration& result) {
     const CalibrationOptions& options = work.options;
@@ -318,9 +344,11 @@ void validate(const Work& work, Calibration& result) {
     }
     // What else was identified there the estimate's covariance does not tell.
     const bool is_same = options.validation_campaign == nullptr;
-    result.validation = detail::judge({campaign, estimate, work.used.configurations, is_same,
-                                       refitted_count(options.refitted, campaign)},
-                                      *options.validation);
+    const auto nominal = fit_nominal_to_validation(work, campaign);
+    result.validation =
+        detail::judge({campaign, estimate, work.used.configurations, is_same,
+                       refitted_count(options.refitted, campaign), pointer_to(nominal)},
+                      *options.validation);
     if (is_same && options.refitted.empty()) {
         result.moved =
             detail::find_moved(work.refitting(), campaign, estimate, *options.validation);
@@ -333,8 +361,10 @@ void judge_others(const Work& work, const Measurements& all, Calibration& result
         std::optional<Judgement> judgement;
         if (configurations.empty()) return judgement;
         const Measurements others = take(all, configurations);
-        judgement =
-            detail::judge({result.campaign, result.estimate, work.used.configurations}, others);
+        const auto nominal = fit_nominal(work);
+        judgement = detail::judge({result.campaign, result.estimate, work.used.configurations, true,
+                                   0, pointer_to(nominal)},
+                                  others);
         if (judgement->is_beyond()) {
             judgement->moved =
                 detail::find_moved(work.refitting(), result.campaign, result.estimate, others);

@@ -99,6 +99,9 @@ JudgedGroup judge_group(const Judge& judge, PoseGroup group, const std::vector<I
             find_beyond_measured(judge.campaign, judge.calibrated_with, part.configurations)
                 ->joints;
     }
+    if (const NominalRobot* const nominal = judge.nominal) {
+        judged.nominal = make_metrics(nominal->campaign, nominal->parameters(), part).rms();
+    }
     const ErrorFreedom freedom = freedom_of(judge, part);
     judged.interval = interval_of(judged.found.rms(), freedom.of_poses, judge.fitted_count);
     if (!judge.knows_expected) return judged;

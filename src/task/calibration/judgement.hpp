@@ -4,6 +4,7 @@
 #include "posewise/measurement/campaign.hpp"
 #include "posewise/measurement/measurements.hpp"
 #include "posewise/task/judgement.hpp"
+#include "task/doubt/nominal_residuals.hpp"
 
 namespace posewise::detail {
 
@@ -19,6 +20,7 @@ struct Judge {
     /// Whether the estimate's covariance tells what to expect there.
     bool knows_expected = true;
     Index fitted_count = 0;  ///< of base and targets, fitted to the poses that are judged
+    const NominalRobot* nominal = nullptr;  ///< to compare with, if it is known
 };
 
 Judgement judge(const Judge& judge, const Measurements& others);

@@ -180,9 +180,7 @@ RowMatrixXd nominal_residuals(const Campaign& campaign, const Chain& robot,
                               const LevenbergMarquardtOptions& options) {
     const NominalRobot nominal =
         fit_nominal_robot(campaign, robot, measurements, std::move(registered), options);
-    const bool is_fitted = nominal.fitted.undetermined.empty();
-    return residuals(nominal.campaign, is_fitted ? nominal.fitted.parameters : nominal.start,
-                     measurements);
+    return residuals(nominal.campaign, nominal.parameters(), measurements);
 }
 
 }  // namespace detail

@@ -199,15 +199,29 @@ void find_board_factor(const Campaign& campaign, const Measurements& measured,
                       measured, registered, doubt);
 }
 
+/// Stated ones that are to be found tell only roughly where to begin, and poses are planned by
+/// them.
+void check_focal_lengths(const CameraSensor& camera, Index c, const VectorXd& unknowns,
+                         CameraDoubt& doubt) {
+    constexpr double far = 1.5;
+    const Intrinsics& stated = camera.camera(c).intrinsics;
+    const Intrinsics found = camera.placed(c, unknowns).intrinsics;
+    const auto is_far = [](double one, double other) {
+        return other > 0 && (one > far * other || other > far * one);
+    };
+    const bool is_negative = !(found.fx > 0 && found.fy > 0);
+    if (!is_negative && !is_far(found.fx, stated.fx) && !is_far(found.fy, stated.fy)) return;
+    doubt.camera = c;
+    doubt.focal_lengths = {found.fx, found.fy};
+    if (!is_negative) doubt.stated_focal_lengths = {stated.fx, stated.fy};
+}
+
 /// Of what is not about the size of the board.
 void check_others(const detail::PartAlone& alone, const CameraSensor& camera, CameraDoubt& doubt) {
     const VectorXd& unknowns = alone.registered.sensor;
     check_principal_point(camera, alone.measured, unknowns, doubt);
     for (Index c = 0; c < camera.camera_count() && !doubt.focal_lengths; ++c) {
-        const Intrinsics found = camera.placed(c, unknowns).intrinsics;
-        if (found.fx > 0 && found.fy > 0) continue;
-        doubt.camera = c;
-        doubt.focal_lengths = {found.fx, found.fy};
+        check_focal_lengths(camera, c, unknowns, doubt);
     }
     doubt.is_seen_from_back =
         is_seen_from_back(alone.campaign, camera, alone.measured, alone.registered);

@@ -9,6 +9,10 @@ struct NominalRobot {
     Campaign campaign;  ///< without errors of the robot
     Parameters start;   ///< as registered
     Estimate fitted;    ///< undetermined where fitting takes more configurations
+
+    const Parameters& parameters() const {
+        return fitted.undetermined.empty() ? fitted.parameters : start;
+    }
 };
 NominalRobot fit_nominal_robot(const Campaign& campaign, const Chain& robot,
                                const Measurements& measurements, Parameters registered,

@@ -4,6 +4,7 @@
 
 #include "core/format.hpp"
 #include "posewise/core/types.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/task/doubts.hpp"
 
@@ -145,6 +146,17 @@ std::vector<PlaceDoubt> find_place_doubts(const Campaign& campaign, const Parame
              find_turn(base, registered.world_from_base)});
     }
     for (PlaceDoubt& frame : frames_of(campaign, registered)) add(frame);
+    const auto* const camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
+    if (camera != nullptr && campaign.has_nominal_targets && !camera->setup().known_place) {
+        const Isometry3d stated = camera->place(campaign.nominal.sensor);
+        const Isometry3d found = camera->place(registered.sensor);
+        add({"sensor.place",
+             stated.translation(),
+             found.translation(),
+             find_unit(stated.translation().norm(), found.translation().norm()),
+             {},
+             find_turn(stated, found)});
+    }
     const Targets& targets = campaign.sensor->targets();
     if (!campaign.has_nominal_targets || targets.unknown_count() < 3 * targets.count())
         return doubts;

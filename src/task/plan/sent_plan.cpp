@@ -128,7 +128,8 @@ VectorXd send(const Grid& grid, const std::string& what, const VectorXd& q,
     if (other) return *other;
     throw InputError(fmt::format(
         "{} is right, but no joint values next to it are in the program's digits: rounded it {}; "
-        "must be off its limit, plan with margin_deg",
+        "must be off its limit; plan again without it: `dropped`, or with margin_deg where it is a "
+        "joint's",
         what, fault));
 }
 
