@@ -178,7 +178,8 @@ TEST(ToPage, HasThePlacesInTheImageOfEachCamera) {
     EXPECT_EQ(shown["images"][1]["size_px"], json({1280.0, 960.0}));
     EXPECT_EQ(shown["images"][1]["columns"], 8);
     EXPECT_EQ(shown["images"][1]["counts"].size(), 48U);
-    EXPECT_EQ(shown["images"][2].size(), 1U);
+    EXPECT_EQ(shown["images"][1]["name"], "camera 2");
+    EXPECT_EQ(shown["images"][2].size(), 2U);  // rms_px and name
     const json& readings = shown["readings"];
     ASSERT_EQ(readings["camera"].size(), listed.size());
     const Index corners = std::ssize(setup.corners);

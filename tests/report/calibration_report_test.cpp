@@ -252,9 +252,9 @@ TEST(AnswerCalibration, SaysWhichPartsOfTheImageCornersCover) {
     image.part = 1;
     image.empty.clear();
     EXPECT_EQ(text(), "corners of the board cover 100 % of the image");
-    calibration.campaign.sensor = std::make_shared<CameraSensor>(testing::three_cameras());
-    calibration.images.push_back({1, {1280, 960}, 8, 6, {}, 0.25, {"middle"}});
-    calibration.images.push_back({2, {1280, 960}, 8, 6, {}, 0, {"middle"}});
+    image.name = "camera 1";
+    calibration.images.push_back({1, {1280, 960}, 8, 6, {}, 0.25, {"middle"}, "camera 2"});
+    calibration.images.push_back({2, {1280, 960}, 8, 6, {}, 0, {"middle"}, "camera 3"});
     EXPECT_EQ(text(),
               "corners of the board cover 100 % of camera 1's image; 25 % of camera 2's image, "
               "none at its middle; 0 % of camera 3's image");

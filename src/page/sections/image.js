@@ -103,7 +103,9 @@ export function render({ document, residuals, expected }) {
     el(
       'div',
       { class: 'figures' },
-      hasPlaces(ofCameras(residuals)) ? ofCameras(residuals).images.map((unused, k) => imageFigure(residuals, k)) : expected.images.map((unused, k) => expectedFigure(expected, k)),
+      hasPlaces(ofCameras(residuals))
+        ? ofCameras(residuals).images.map((unused, k) => imageFigure(residuals, k))
+        : expected.images.map((unused, k) => expectedFigure(expected, k)),
     ),
   );
 }
