@@ -58,7 +58,8 @@ are the nominal robot's. Joints are written in the digits of the file.
 pitch_deg, yaw_deg about fixed axes; rx_deg, ry_deg, rz_deg; or qw, qx, qy, qz), or with --for those of a
 program, in place. The nominal robot's joint values there are searched near those of the table (columns
 q1_deg ...), --near, or home, and are corrected. ABB's quadrants and KUKA's T select among them; FANUC's
-CONFIG and KUKA's S are kept but not looked at. A target that is not reached is refused by its name.
+CONFIG and KUKA's S are kept but not looked at. A target that is not reached is refused by its name, a
+program whose own tool is at another distance from the flange than --tool-mm by both.
 
 Where joints are held in most configurations and over half of their error is left, nothing is written
 and the exit code is 3; --force writes it all the same.)";
@@ -71,6 +72,7 @@ struct CorrectArguments {
     std::string format;  ///< program format of `poses`; empty: it is a CSV of configurations
     std::string base = "estimate";
     std::array<double, 3> tool_mm{};
+    bool has_tool_mm = false;
     std::array<double, 3> tool_rpy_deg{};
     Index tool_target = 0;      ///< from 1; 0: not stated
     bool is_cartesian = false;  ///< targets may be places of the tool
@@ -208,6 +210,35 @@ ProgramToCorrect read_program_to_correct(const CorrectArguments& arguments,
                                                             : io::TargetKinds::Joints)};
 }
 
+/// Throws InputError where the tool of a program's places is not stated, or the program states
+/// another one, unless it is forced. Only distances from the flange are compared: the axes of the
+/// controller's flange may be others than the model's.
+void check_tool(const CorrectArguments& arguments, const io::TargetProgram& program,
+                const CartesianFrames& frames) {
+    if (program.places.empty()) return;
+    const auto& tool = program.tool;
+    const Vector3d mm = tool ? Vector3d(tool->position * mm_per_m) : Vector3d::Zero();
+    const std::string stated = tool ? fmt::format("the tool at {:g}, {:g}, {:g} mm in line {}",
+                                                  mm[0], mm[1], mm[2], tool->line)
+                                    : "";
+    if (!arguments.has_tool_mm && arguments.tool_target == 0) {
+        throw input_error_at(
+            {arguments.poses},
+            fmt::format("has places of a tool that is not stated{}; state --tool-mm (0,0,0 if they "
+                        "are the flange's), or --tool-target",
+                        tool ? "; the program has " + stated : ""));
+    }
+    constexpr double tolerance = 1;  // mm, of digits and of a target's place that was found
+    const Vector3d used = frames.flange_from_tool.translation() * mm_per_m;
+    if (!tool || arguments.is_forced || std::abs(used.norm() - mm.norm()) <= tolerance) return;
+    throw input_error_at(
+        {arguments.poses},
+        fmt::format("has {}, {:.4g} mm from the flange, {} states one at {:.4g}, {:.4g}, {:.4g} "
+                    "mm, {:.4g} mm from it; must be the same (--force takes the latter)",
+                    stated, mm.norm(), arguments.has_tool_mm ? "--tool-mm" : "--tool-target",
+                    used[0], used[1], used[2], used.norm()));
+}
+
 /// Appends places of the tool as the nominal robot reaches them.
 void append(io::Configurations& poses, const io::CampaignFile& file,
             const std::vector<CartesianTarget>& targets, const CartesianFrames& frames) {
@@ -335,6 +366,7 @@ void correct(const CorrectArguments& arguments, const CommonOptions& common) {
                              "does not state a base; --base campaign needs it");
     }
     const CartesianFrames frames = cartesian_frames(arguments, file, found);
+    if (program) check_tool(arguments, program->program, frames);
     const io::Configurations poses = read_poses(arguments, file, program, frames);
     io::check_within_limits(arguments.poses, file, poses);
     const CorrectedPoses corrected = compute_from(arguments.poses, [&] {
@@ -418,7 +450,8 @@ void add_correct_options(CLI::App& command, CorrectArguments& arguments) {
         ->capture_default_str();
     command
         .add_option("--tool-mm", arguments.tool_mm,
-                    "Point whose position counts, in the flange frame: X,Y,Z (default: the flange)")
+                    "Point whose position counts, in the flange frame: X,Y,Z (default: the flange; "
+                    "must be stated for Cartesian targets of a program)")
         ->delimiter(',')
         ->check(real_number(-1e4, 1e4));
     command
@@ -458,7 +491,10 @@ void add_correct(CLI::App& program, const CommonOptions& common) {
     add_correct_options(*command, *arguments);
     add_force_option(*command, arguments->is_forced);
     command->footer(correct_footer);
-    command->callback([arguments, &common] { correct(*arguments, common); });
+    command->callback([arguments, command, &common] {
+        arguments->has_tool_mm = command->count("--tool-mm") > 0;
+        correct(*arguments, common);
+    });
 }
 
 }  // namespace posewise::cli

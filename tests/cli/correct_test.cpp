@@ -282,7 +282,7 @@ TEST_F(Correct, ReplacesThePlacesOfAProgram) {
     write_text("weld.script", program);
     const Outcome outcome = run(correct_ +
                                 "weld.script --for ur --cartesian --near 7,-5,-22,-88,7,86 "
-                                "-o corrected.script");
+                                "--tool-mm 0,0,0 -o corrected.script");
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("2 targets corrected"), std::string::npos) << outcome.out;
     EXPECT_NE(outcome.err.find("weld.script: not corrected: line 4: "), std::string::npos);
@@ -290,6 +290,36 @@ TEST_F(Correct, ReplacesThePlacesOfAProgram) {
     EXPECT_EQ(corrected.find("movel(p[1.5, "), std::string::npos) << corrected;
     EXPECT_NE(corrected.find("  q = pose_trans(p[0, 0, 0, 0, 0, 0], q)\n"), std::string::npos);
     EXPECT_NE(corrected.find("# p[1, 2]"), std::string::npos) << corrected;
+}
+
+/// The controller's places are of the tool that the program, or the pendant, selects.
+TEST_F(Correct, IsToldTheToolOfPlaces) {
+    const std::string options = " --for ur --cartesian --near 7,-5,-22,-88,7,86";
+    const auto program = [&](const std::string& tool) {
+        write_text("weld.script",
+                   "def weld():\n" + tool + "  movel(p[1.5, 0.2, 0.9, 0, 0.3, 0], a=1)\nend\n");
+        return correct_ + "weld.script" + options;
+    };
+    const std::string none = program("");
+    expect_input_error(none + " -o c.script",
+                       "weld.script: has places of a tool that is not stated; state --tool-mm "
+                       "(0,0,0 if they are the flange's), or --tool-target");
+    run_well(none + " --tool-mm 0,0,0 -o c.script");
+    const std::string torch = program("  set_tcp(p[0, 0, 0.25, 0, 0, 0])\n");
+    expect_input_error(torch + " -o d.script",
+                       "; the program has the tool at 0, 0, 250 mm in line 2; state");
+    expect_input_error(torch + " --tool-mm 0,0,100 -o d.script",
+                       "has the tool at 0, 0, 250 mm in line 2, 250 mm from the flange, --tool-mm "
+                       "states one at 0, 0, 100 mm, 100 mm from it; must be the same");
+    expect_input_error(torch + " --tool-target 1 -o d.script", "--tool-target states one at ");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "d.script"));
+    // The model's flange may have other axes.
+    EXPECT_EQ(run(torch + " --tool-mm 250,0,0").err.find("must be the same"), std::string::npos);
+    EXPECT_EQ(run(torch + " --tool-mm 0,0,100 --force").err.find("must be the same"),
+              std::string::npos);
+    // Joint values are of no tool.
+    write_text("joints.script", "movej([0.1, 0.2, -0.3, 0.4, 0.5, 0.6], a=1.4)\n");
+    run_well(correct_ + "joints.script" + options + " -o c.script");
 }
 
 TEST_F(Correct, RefusesWhatItCannotUse) {

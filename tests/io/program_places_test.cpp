@@ -325,10 +325,89 @@ TEST(ProgramPlaces, AreOfOneToolAndFrame) {
     EXPECT_NE(error(Abb, "table", "wobj0").find("several frames"), std::string::npos);
     EXPECT_NE(error(Ur, "  movel", "  set_tcp(p[0,0,0,0,0,0])\n  movel").find("several tools"),
               std::string::npos);
+    const auto expect = [&](ProgramFormat format, const std::string& what, const std::string& by,
+                            const std::string& words) {
+        const std::string found = error(format, what, by);
+        EXPECT_NE(found.find(words), std::string::npos) << by << ": " << found;
+    };
+    expect(Kuka, "PTP {", "BAS(#TOOL,2)\nPTP {",
+           "several tools, 'tool_data[1]' and 'tool_data[2]'");
+    expect(Kuka, "PTP {", "BAS (#TOOL, 1 )\nPTP {", "no error");
+    expect(Kuka, "PTP {", "$tool = Tool_Data[1]\nPTP {", "no error");
+    expect(Kuka, "PTP {", "BAS(#BASE,2)\n$BASE=BASE_DATA[3]\nPTP {", "several frames");
+    expect(Kuka, "$TOOL=TOOL_DATA[1]", "FDAT_ACT=FP1\nFDAT_ACT=FP2",
+           "several tools, 'fp1' and 'fp2'");
+    expect(Fanuc, "/POS", "   2:  UTOOL_NUM=4 ;\n/POS", "several tools, '2' and '4'");
+    expect(Fanuc, "/POS", "   2:  UTOOL_NUM=2 ;\n   3:  !UTOOL_NUM=4 ;\n/POS", "no error");
+    expect(Fanuc, "/POS", "   2:  UFRAME_NUM = 4 ;\n/POS", "several frames, '1' and '4'");
+    expect(Abb, "MoveL [", "TriggL p1,v100,t,fine,gun;\n MoveL [", "several tools, 'gun'");
+    // What shifts places, or calculates where they are.
+    expect(Kuka, "PTP {", "$BASE.X=$BASE.X+10\nPTP {", "poses.src:5: calculates '$base.x'");
+    expect(Kuka, "PTP {", "$BASE=BASE_DATA[1]:OFFS\nPTP {", "calculates '$base'");
+    expect(Kuka, "PTP {", "BASE_DATA[1]=f(2)\nPTP {", "calculates 'base_data[1]'");
+    expect(Kuka, "PTP {", "$BASE={FRAME: X 1,Y 2,Z 3,A 0,B 0,C 0}\nPTP {", "no error");
+    expect(Fanuc, "/POS", "   2:  UFRAME[1]=PR[3] ;\n/POS", "CELL.LS:5: sets 'uframe[1]'");
+    for (const std::string shift :
+         {"PDispSet d;", "PDispOn p1,torch;", "EOffsSet e;", "EOffsOn p1;"}) {
+        expect(Abb, "MoveL [", shift + "\n MoveL [", "shifts places by '");
+    }
+    expect(Abb, "MoveL [", "PDispOff; ! PDispSet d;\n MoveL [", "no error");
+    expect(Abb, ",torch", "\\Corr,torch", "shifts places by '\\corr'");
+    expect(Ur, "  movel", "  path_offset_enable()\n  movel", "cell.script:5: shifts places");
     // Numbers that are none.
+    expect(Fanuc, "CONFIG", "", "has no CONFIG");
     EXPECT_NE(error(Fanuc, "X = ", "X = x").find("is no number of mm"), std::string::npos);
     EXPECT_NE(error(Abb, "],[0.", "],[7.").find("has a quaternion of length"), std::string::npos);
     EXPECT_NE(error(Ur, "p[0.", "p[1234567890.").find("where no cell is"), std::string::npos);
+}
+
+/// A program of inline forms selects tool and base by its FDATs, which stand in the .dat.
+TEST(ProgramPlaces, OfKukaTakeToolsFromTheFileBeside) {
+    const Cell cell(ProgramFormat::Kuka);
+    std::string text = detail::read_file(cell.path);
+    text.replace(text.find("$TOOL=TOOL_DATA[1]"), 18, "FDAT_ACT=FP1");
+    text.replace(text.rfind("PTP {"), 5, "FDAT_ACT=FP2\nPTP {");
+    detail::write_file(cell.path, text);
+    const auto error = [&](int tool, int base) {
+        cell.folder.write("poses.dat",
+                          fmt::format("DEFDAT poses\nDECL FDAT FP1={{TOOL_NO 1,BASE_NO 1,IPO_FRAME "
+                                      "#BASE}}\nDECL FDAT FP2={{TOOL_NO {},BASE_NO {},IPO_FRAME "
+                                      "#BASE}}\nENDDAT\n",
+                                      tool, base));
+        return input_error_of([&] { cell.read(); });
+    };
+    EXPECT_EQ(error(1, 1), "no error");
+    EXPECT_NE(error(2, 1).find("several tools, 'tool_data[1]'"), std::string::npos) << error(2, 1);
+    EXPECT_NE(error(1, 2).find("several frames"), std::string::npos) << error(1, 2);
+}
+
+TEST(ProgramPlaces, NameTheToolThatTheProgramStates) {
+    const auto tool = [](ProgramFormat format, const std::string& what, const std::string& by) {
+        const Cell cell(format);
+        std::string text = detail::read_file(cell.path);
+        for (std::size_t at = text.find(what); at != std::string::npos;
+             at = text.find(what, at + by.size())) {
+            text.replace(at, what.size(), by);
+        }
+        detail::write_file(cell.path, text);
+        const auto stated = cell.read().tool;
+        if (!stated) return std::string("none");
+        const Vector3d mm = 1e3 * stated->position;
+        return fmt::format("{:g} {:g} {:g} in {}", mm[0], mm[1], mm[2], stated->line);
+    };
+    using enum ProgramFormat;
+    EXPECT_EQ(tool(Ur, "x", "x"), "0 0 200 in 2");
+    EXPECT_EQ(tool(Ur, "set_tcp(p[0, 0, 0.2, 0, 0, 0])", "set_tcp(torch)"), "none");
+    EXPECT_EQ(tool(Kuka, "x", "x"), "none");
+    EXPECT_EQ(tool(Kuka, "TOOL_DATA[1]", " {FRAME: X 1, Y 2,Z -3.5,A 0,B 0,C 0}"), "1 2 -3.5 in 2");
+    EXPECT_EQ(tool(Kuka, "=TOOL_DATA[1]", " = $NULLFRAME"), "0 0 0 in 2");
+    EXPECT_EQ(tool(Abb, "x", "x"), "none");
+    EXPECT_EQ(tool(Abb, ",torch", ",tool0"), "0 0 0 in 3");
+    const std::string data = "[[7,8,250],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];\n  PROC";
+    EXPECT_EQ(tool(Abb, "  PROC", "\n  TASK PERS tooldata Torch:=[TRUE," + data), "7 8 250 in 3");
+    EXPECT_EQ(tool(Abb, "  PROC", "  PERS tooldata torch:=[FALSE," + data), "none");
+    EXPECT_EQ(tool(Abb, "  PROC", "  PERS tooldata torch2:=[TRUE," + data), "none");
+    EXPECT_EQ(tool(Fanuc, "x", "x"), "none");
 }
 
 TEST(ProgramPlaces, WithMovingExternalAxesStay) {

@@ -231,6 +231,56 @@ TEST(ProgramTargets, AreRefusedWhereTheyCannotBeUsed) {
               std::string::npos);
 }
 
+/// Where nothing is left to correct, the first target that stays is named, with the reason.
+TEST(ProgramTargets, ThatAllStaySayWhy) {
+    const auto expect = [](ProgramFormat format, const std::string& text,
+                           const std::string& words) {
+        const std::string error = Written(format, text).error();
+        EXPECT_NE(error.find(words), std::string::npos) << text << error;
+    };
+    const auto fanuc = [](const std::string& moves, const std::string& joints) {
+        return "/PROG A\n/MN\n   1:" + moves + " ;\n/POS\nP[1]{\n   GP1:\n\tUF : 0, UT : 1,\n" +
+               joints + "\n};\n/END\n";
+    };
+    const std::string axes =
+        "\tJ1= 0.0 deg, J2= 0.0 deg, J3= 0.0 deg,\n\tJ4= 0.0 deg, J5= 0.0 deg, J6= 0.0 deg";
+    const std::string first =
+        "has no target in joint values that can be corrected; must have one: "
+        "the first of 1 that stay ";
+    expect(ProgramFormat::Fanuc, fanuc("J P[1] 10% FINE INC", axes),
+           "CELL.LS:5: " + first + "is of a move with INC");
+    expect(ProgramFormat::Fanuc, fanuc("J P[1] 10% FINE Tool_Offset,PR[1]", axes),
+           "is of a move with an offset");
+    // Both positions of a circular move, whose end stands in the next line.
+    expect(ProgramFormat::Fanuc, fanuc("C P[1]\n    :  P[1] 9mm/sec FINE Offset,PR[2]", axes),
+           "is of a move with an offset");
+    expect(ProgramFormat::Kuka, "DEF a()\nXP={X 1,Y 2,Z 3,A 0,B 0,C 0}\nPTP {X 1,Y 2}\nEND\n",
+           "poses.src:3: " + first + "is a place of the tool, which --cartesian takes");
+    expect(ProgramFormat::Kuka, "DEF a()\nPTP_REL {A1 1,A2 2,A3 3,A4 4,A5 5,A6 6}\nEND\n",
+           "is relative to the position before");
+    expect(ProgramFormat::Kuka, "DEF a()\nPTP {A1 1,A2 2}\nEND\n",
+           "states no number for each joint");
+    expect(ProgramFormat::Ur, "movel(p[0, 0, 1, 0, 0, 0])\n", "which --cartesian takes");
+}
+
+TEST(ProgramTargets, OfAnArrayAreCorrectedEach) {
+    const std::string rest = ",[9E9,9E9,9E9,9E9,9E9,9E9]]";
+    const auto read = [&](const std::string& blank, const std::string& second) {
+        return Written(ProgramFormat::Abb, "MODULE m\nVAR jointtarget j{2}:=[" + blank +
+                                               "[[1,2,3,4,5,6]" + rest + "," + blank + second +
+                                               rest + "];\nENDMODULE\n")
+            .read();
+    };
+    for (const std::string blank : {"", "\n"}) {
+        const TargetProgram good = read(blank, "[[7,8,9,1,2,3]");
+        EXPECT_EQ(good.targets.size(), 2U);
+        EXPECT_TRUE(good.others.empty());
+        const TargetProgram spoilt = read(blank, "[[7,x,9,1,2,3]");
+        EXPECT_EQ(spoilt.targets.size(), 1U);
+        EXPECT_EQ(spoilt.others, std::vector<long>{blank.empty() ? 2 : 4});
+    }
+}
+
 TEST(ProgramTargets, OfFilesThatWereCutOffAreRefused) {
     const std::string axes = "A1 1,A2 2,A3 3,A4 4,A5 5,A6 6";
     const auto is_cut = [](ProgramFormat format, const std::string& text) {

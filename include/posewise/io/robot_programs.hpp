@@ -194,10 +194,18 @@ struct CorrectedPlace {
     VectorXd joints;   ///< and now
 };
 
+/// The tool that a program states for its places: URScript's set_tcp(p[...]), KUKA's $TOOL={...} or
+/// $NULLFRAME, ABB's tool0 or tooldata of the same file.
+struct StatedTool {
+    long line = 0;
+    Vector3d position = Vector3d::Zero();  ///< in the controller's flange frame, m
+};
+
 struct TargetProgram {
     std::string content;
     std::vector<JointTarget> targets;
     std::vector<PlaceTarget> places = {};
+    std::optional<StatedTool> tool = {};  ///< of the places, where numbers state it
     /// Lines of targets that are no joint values, or that are added to others: they stay as they
     /// are.
     std::vector<long> others;
@@ -217,7 +225,8 @@ enum class TargetKinds {
 /// (.script). If asked for, also places: FANUC's positions with CONFIG, KUKA's with X to C, ABB's
 /// robtargets, poses p[...] that moves of URScript take. What else the program does is not looked
 /// at. Throws InputError, with the place, for another format, a target that lacks joints or has one
-/// where no robot is, places of several tools or frames, and a program without targets.
+/// where no robot is, places of several tools or frames or that the program shifts, and a program
+/// without targets.
 TargetProgram read_program_targets(const std::string& path, ProgramFormat format,
                                    const ControllerJoints& joints,
                                    TargetKinds kinds = TargetKinds::Joints);

@@ -107,7 +107,8 @@ void check_abb(const TextLine& line) {
     const std::string_view moves = abb_program().rules.moves;
     for (const TextLine& statement : abb_statements(line)) {
         if (statement.begins_with("!")) continue;
-        check_target(abb_program().rules, statement, moves);
+        // What begins with a bracket goes on with an array of the line before.
+        if (!statement.begins_with("[")) check_target(abb_program().rules, statement, moves);
         check_abb_amounts(statement);
         if (!is_word(first_word(statement.text), moves)) continue;
         if (statement.text.ends_with(',')) continue;  // goes on in the next line

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <set>
 
 #include "core/text.hpp"
 #include "io/format/text.hpp"
@@ -196,64 +195,6 @@ std::vector<std::pair<io::TextSpan, std::string>> place_texts(const io::TargetPr
         texts.emplace_back(target.configuration[k], std::to_string(states[k]));
     }
     return texts;
-}
-
-/// What stands between the marker and one of the letters that end it, each once.
-std::set<std::string> words_after(const std::string& text, std::string_view marker,
-                                  std::string_view ends) {
-    const std::string lower = lower_case(text);
-    std::set<std::string> words;
-    for (std::size_t at = lower.find(marker); at != std::string::npos;
-         at = lower.find(marker, at + 1)) {
-        const std::size_t begin = at + marker.size();
-        const std::size_t end = std::min(lower.find_first_of(ends, begin), lower.size());
-        words.emplace(trim(std::string_view(lower).substr(begin, end - begin)));
-    }
-    return words;
-}
-
-/// The tools of RAPID's moves: the last argument but for a work object.
-std::set<std::string> abb_tools(const std::string& text) {
-    const std::string lower = lower_case(text);
-    std::set<std::string> tools;
-    for (const char* const move : {"movel ", "movej ", "movec ", "moveabsj "}) {
-        for (std::size_t at = lower.find(move); at != std::string::npos;
-             at = lower.find(move, at + 1)) {
-            const std::size_t end = std::min(lower.find(';', at), lower.size());
-            std::string_view words = std::string_view(lower).substr(at, end - at);
-            words = words.substr(0, words.find("\\wobj"));
-            const std::size_t comma = words.rfind(',');
-            if (comma != std::string_view::npos) tools.emplace(trim(words.substr(comma + 1)));
-        }
-    }
-    return tools;
-}
-
-void check_one_frame(const std::string& path, const std::string& text, ProgramFormat format) {
-    const auto check = [&](const std::set<std::string>& words, const char* what) {
-        if (words.size() < 2) return;
-        throw input_error_at(
-            {path}, fmt::format("moves with several {}s, {} and {}; must be of one, whose targets "
-                                "are corrected together",
-                                what, quote(*words.begin()), quote(*std::next(words.begin()))));
-    };
-    if (format == ProgramFormat::Fanuc) {
-        check(words_after(text, "ut :", ",\n"), "tool");
-        check(words_after(text, "uf :", ",\n"), "frame");
-    }
-    if (format == ProgramFormat::Kuka) {
-        for (const char* const tool : {"$tool=", "$tool =", "tool_no"}) {
-            check(words_after(text, tool, ",}\n"), "tool");
-        }
-        for (const char* const base : {"$base=", "$base =", "base_no"}) {
-            check(words_after(text, base, ",}\n"), "frame");
-        }
-    }
-    if (format == ProgramFormat::Abb) {
-        check(abb_tools(text), "tool");
-        check(words_after(text, "\\wobj:=", ";,"), "frame");
-    }
-    if (format == ProgramFormat::Ur) check(words_after(text, "set_tcp(", "\n"), "tool");
 }
 
 }  // namespace posewise::detail

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -23,6 +24,13 @@ using detail::masked;
 using detail::ProgramRules;
 using detail::word_before;
 
+std::string upper_case(std::string text) {
+    for (char& letter : text) {
+        letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+    }
+    return text;
+}
+
 class TargetReader {
   public:
     TargetReader(const std::string& path, ProgramFormat format, const ControllerJoints& joints,
@@ -37,6 +45,7 @@ class TargetReader {
         for (std::size_t k = 0; k < program_.content.size(); ++k) {
             if (program_.content[k] == '\n') line_begins_.push_back(k + 1);
         }
+        upper_ = upper_case(program_.content);
     }
 
     void read_fanuc();
@@ -49,7 +58,7 @@ class TargetReader {
 
     /// What tells which tools and frames its targets are of: without comments and strings.
     std::string code() const {
-        if (format_ == ProgramFormat::Fanuc) return fanuc_frames_;
+        if (format_ == ProgramFormat::Fanuc) return fanuc_frames();
         constexpr char abb_comment = '!';
         const char comment = format_ == ProgramFormat::Kuka  ? ';'
                              : format_ == ProgramFormat::Abb ? abb_comment
@@ -59,9 +68,16 @@ class TargetReader {
 
     TargetProgram finish() {
         if (program_.targets.empty() && program_.places.empty()) {
-            throw input_error_at({path_}, takes_places()
-                                              ? "has no target; must have one"
-                                              : "has no target in joint values; must have one");
+            const std::string what =
+                takes_places() ? "has no target" : "has no target in joint values";
+            const auto first = std::ranges::min_element(program_.others);
+            if (first == program_.others.end()) {
+                throw input_error_at({path_}, what + "; must have one");
+            }
+            throw input_error_at(
+                {path_, *first},
+                fmt::format("{} that can be corrected; must have one: the first of {} that stay {}",
+                            what, program_.others.size(), reasons_.at(*first)));
         }
         std::ranges::sort(program_.others);
         const auto repeated = std::ranges::unique(program_.others);
@@ -80,7 +96,16 @@ class TargetReader {
         const std::size_t begin = *std::prev(std::ranges::upper_bound(line_begins_, at));
         return detail::trim(text.substr(begin, at - begin));
     }
-    void leave(std::size_t at) { program_.others.push_back(place(at).line); }
+    /// `why` the target there stays.
+    void leave(std::size_t at, const char* why = "states no number for each joint") {
+        const long line = place(at).line;
+        program_.others.push_back(line);
+        reasons_.emplace(line, why);
+    }
+    /// As leave(), of coordinates.
+    void leave_place(std::size_t at, const char* why) {
+        leave(at, takes_places() ? why : "is a place of the tool, which --cartesian takes");
+    }
 
     void add(const std::vector<TextSpan>& spans, const std::string& id = "") {
         const VectorXd none = VectorXd::Zero(joints_.count());
@@ -147,12 +172,13 @@ class TargetReader {
                           const std::function<bool(const std::string&)>& is_left);
     void leave_unread(const std::string& text, char end,
                       const std::function<bool(std::string_view)>& is_of_target);
-    std::set<std::string> fanuc_added_positions() const;
-    bool read_fanuc_place(std::size_t begin, std::string_view text, const std::string& number);
+    std::map<std::string, const char*> fanuc_added_positions() const;
+    std::string fanuc_frames() const;
+    void read_fanuc_place(std::size_t begin, std::string_view text, const std::string& number);
     void read_kuka_aggregate(const std::string& text, std::size_t at);
     bool read_abb_robtarget(const std::string& text, std::size_t at);
     void read_fanuc_position(std::size_t begin, std::size_t end,
-                             const std::set<std::string>& added);
+                             const std::map<std::string, const char*>& added);
 
     std::size_t count() const { return static_cast<std::size_t>(joints_.count()); }
 
@@ -162,8 +188,10 @@ class TargetReader {
     const ControllerJoints& joints_;
     TargetKinds kinds_;
     std::vector<std::size_t> line_begins_{0};
+    std::string upper_;  ///< the content in capitals
     TargetProgram program_;
-    std::string fanuc_frames_;  ///< "UF : 0, UT : 1" of each place
+    std::map<long, const char*> reasons_;  ///< of lines in `others`
+    std::vector<TextSpan> fanuc_frames_;   ///< "UF : 0, UT : 1" of each place
 };
 
 // ---- FANUC ----
@@ -173,37 +201,38 @@ std::string fanuc_number(std::string_view text) {
     return std::string(detail::trim(text.substr(0, text.find_first_of(":]"))));
 }
 
-/// Numbers of positions that moves add to others: INC, and with an offset.
-std::set<std::string> TargetReader::fanuc_added_positions() const {
-    std::set<std::string> added;
-    const std::string text = lower_case(content().substr(0, content().find("/POS")));
+/// Positions that moves add to others, by their numbers: why.
+std::map<std::string, const char*> TargetReader::fanuc_added_positions() const {
+    std::map<std::string, const char*> added;
+    const std::string text = lower_case(content().substr(0, upper_.find("/POS")));
     for (std::size_t at = text.find(" p["); at != std::string::npos;
          at = text.find(" p[", at + 1)) {
-        const std::string line = text.substr(at, text.find('\n', at) - at);
-        const bool is_added =
-            line.find("offset") != std::string::npos || line.find(" inc") != std::string::npos;
-        if (is_added) added.insert(fanuc_number(line.substr(3)));
+        // A circular move goes on in the next line.
+        const std::string move = text.substr(at, text.find(';', at) - at);
+        const bool has_offset = move.find("offset") != std::string::npos;
+        if (!has_offset && move.find(" inc") == std::string::npos) continue;
+        added.emplace(fanuc_number(move.substr(3)),
+                      has_offset ? "is of a move with an offset" : "is of a move with INC");
     }
     return added;
 }
 
 void TargetReader::read_fanuc() {
-    const std::size_t positions = content().find("/POS");
+    const std::size_t positions = upper_.find("/POS");
     if (positions == std::string::npos) {
         throw input_error_at({path_}, "has no /POS; must be a program for fanuc");
     }
-    if (content().find("/END", positions) == std::string::npos) {
+    if (upper_.find("/END", positions) == std::string::npos) {
         throw input_error_at({path_}, "has no /END; must be the whole program");
     }
-    const std::set<std::string> added = fanuc_added_positions();
-    const std::string moves = lower_case(content().substr(0, positions));
-    for (const char* const move : {":j pr[", ":l pr[", ":c pr[", ":a pr["}) {  // in registers
-        for (std::size_t at = moves.find(move); at != std::string::npos;) {
-            leave(at);
-            at = moves.find(move, at + 1);
+    const auto added = fanuc_added_positions();
+    for (const char* const move : {":J PR[", ":L PR[", ":C PR[", ":A PR["}) {
+        for (std::size_t at = upper_.find(move); at < positions;) {
+            leave(at, "moves to a position register");
+            at = upper_.find(move, at + 1);
         }
     }
-    const auto next = [&](std::size_t from) { return content().find("P[", from); };
+    const auto next = [&](std::size_t from) { return upper_.find("P[", from); };
     for (std::size_t at = next(positions); at != std::string::npos;) {
         const std::size_t end = std::min(content().find('}', at), content().size());
         read_fanuc_position(at, end, added);
@@ -212,12 +241,15 @@ void TargetReader::read_fanuc() {
 }
 
 void TargetReader::read_fanuc_position(std::size_t begin, std::size_t end,
-                                       const std::set<std::string>& added) {
+                                       const std::map<std::string, const char*>& added) {
     const std::string number = fanuc_number(std::string_view(content()).substr(begin + 2));
-    const std::size_t group = content().find("GP1", begin);
-    if (added.contains(number) || group >= end) return leave(begin);
-    const std::size_t other = content().find("GP", group + 3);
-    const std::string_view text = std::string_view(content()).substr(0, std::min(end, other));
+    const std::size_t group = upper_.find("GP1", begin);
+    if (const auto found = added.find(number); found != added.end()) {
+        return leave(begin, found->second);
+    }
+    if (group >= end) return leave(begin, "is of another group");
+    const std::size_t other = upper_.find("GP", group + 3);
+    const std::string_view text = std::string_view(upper_).substr(0, std::min(end, other));
     std::vector<TextSpan> spans;
     for (std::size_t j = 0; j < count(); ++j) {
         const std::string name = fmt::format("J{}", j + 1);
@@ -225,13 +257,13 @@ void TargetReader::read_fanuc_position(std::size_t begin, std::size_t end,
         if (found == std::string_view::npos) break;
         Cursor cursor(text, found + name.size());
         const auto span = cursor.take('=') ? cursor.number() : std::nullopt;
-        if (!span || cursor.word() != "deg") {
+        if (!span || cursor.word() != "DEG") {
             throw input_error_at(place(found), name + " is no number of degrees; must be");
         }
         spans.push_back(*span);
     }
     if (spans.empty()) {
-        if (!read_fanuc_place(begin, text, number)) leave(begin);
+        read_fanuc_place(begin, text, number);
         return;
     }
     if (spans.size() != count()) {
@@ -242,9 +274,8 @@ void TargetReader::read_fanuc_position(std::size_t begin, std::size_t end,
 }
 
 /// X to R of a position with CONFIG, of the first group, which ends with `text`.
-bool TargetReader::read_fanuc_place(std::size_t begin, std::string_view text,
+void TargetReader::read_fanuc_place(std::size_t begin, std::string_view text,
                                     const std::string& number) {
-    if (!takes_places()) return false;
     constexpr std::string_view names = "XYZWPR";
     std::vector<TextSpan> values;
     for (std::size_t at = text.find('=', begin); at != std::string_view::npos;
@@ -252,21 +283,52 @@ bool TargetReader::read_fanuc_place(std::size_t begin, std::string_view text,
         const std::string_view name = word_before(text, at);
         Cursor cursor(text, at + 1);
         const auto span = cursor.number();
-        if (name.starts_with('E') && !(span && are_at_rest({*span}))) return false;
+        if (name.starts_with('E') && !(span && are_at_rest({*span}))) {
+            return leave_place(begin, "has an external axis that is not at 0");
+        }
         if (name.starts_with('E')) continue;
-        if (values.size() >= names.size() || name != names.substr(values.size(), 1)) return false;
-        if (!span || cursor.word() != (values.size() < 3 ? "mm" : "deg")) {
+        if (values.size() >= names.size() || name != names.substr(values.size(), 1)) {
+            return leave(begin);
+        }
+        if (takes_places() && (!span || cursor.word() != (values.size() < 3 ? "MM" : "DEG"))) {
             throw input_error_at(place(at),
                                  std::string(name) + " is no number of mm or degrees; must be");
         }
-        values.push_back(*span);
+        if (span) values.push_back(*span);
     }
-    if (values.size() != names.size()) return false;
+    if (values.size() != names.size()) return leave(begin);
+    if (!takes_places()) return leave_place(begin, "");
+    if (text.find("CONFIG", begin) == std::string_view::npos) {
+        throw input_error_at(place(begin),
+                             "has no CONFIG, which says with which joints it is reached; must have "
+                             "one");
+    }
     add_place(values, {}, fmt::format("P[{}]", number));
     const std::size_t frames = text.find("UF", begin);
     const std::size_t line = std::min(text.find('\n', frames), text.size());
-    if (frames < line) fanuc_frames_ += std::string(text.substr(frames, line - frames)) + '\n';
-    return true;
+    if (frames < line) fanuc_frames_.push_back({frames, line});
+}
+
+/// The program with blanks in the place of all but its selections of tools and frames and, of its
+/// places, "UF : 0, UT : 1".
+std::string TargetReader::fanuc_frames() const {
+    std::string text = content();
+    for (char& letter : text) letter = letter == '\n' ? letter : ' ';
+    const auto keep = [&](std::size_t begin, std::size_t end) {
+        text.replace(begin, end - begin, content(), begin, end - begin);
+    };
+    for (const TextSpan& frames : fanuc_frames_) keep(frames.begin, frames.end);
+    const std::size_t positions = upper_.find("/POS");
+    for (std::size_t begin = 0; begin < positions;) {
+        const std::size_t end = std::min(content().find('\n', begin), positions);
+        const std::size_t colon = std::min(content().find(':', begin), end);
+        const std::string_view rest =
+            std::string_view(content()).substr(colon, end - colon).substr(colon < end ? 1 : 0);
+        const std::string word = lower_case(std::string(detail::trim(rest)));
+        if (word.starts_with("utool") || word.starts_with("uframe")) keep(end - rest.size(), end);
+        begin = end + 1;
+    }
+    return text;
 }
 
 /// Each line that begins with one of these words needs one that is `end`.
@@ -370,6 +432,13 @@ KukaAggregate read_kuka_numbers(const std::string& text, std::size_t at) {
     return aggregate;
 }
 
+/// Whether a frame stands before or behind the aggregate, "{X 1,...}:OFFSET".
+bool is_kuka_product(const std::string& text, std::size_t at) {
+    Cursor behind(text, std::min(text.find('}', at), text.size() - 1) + 1);
+    const std::size_t before = text.find_last_not_of(" \t", at == 0 ? 0 : at - 1);
+    return behind.take(':') || (at > 0 && before != std::string::npos && text[before] == ':');
+}
+
 void TargetReader::read_kuka_aggregate(const std::string& text, std::size_t at) {
     const std::string before = lower_case(std::string(line_before(at, text)));
     const std::string_view word = Cursor(before, 0).word();
@@ -384,21 +453,28 @@ void TargetReader::read_kuka_aggregate(const std::string& text, std::size_t at) 
         return add(aggregate.axes);
     }
     const bool is_cartesian = aggregate.named.contains("x") && (is_move || is_path || is_place);
-    if (!is_cartesian || is_relative || !takes_places() || !aggregate.is_whole) {
-        if (is_cartesian || is_relative || aggregate.has_axes) leave(at);
+    if (is_relative) return leave(at, "is relative to the position before");
+    if (is_cartesian && aggregate.is_whole && is_kuka_product(text, at)) {
+        return leave_place(at, "is multiplied by another frame");
+    }
+    if (!is_cartesian || !aggregate.is_whole) {
+        if (is_cartesian || aggregate.has_axes) leave(at);
         return;
     }
+    if (!takes_places()) return leave_place(at, "");
     std::vector<TextSpan> values;
     std::vector<TextSpan> external;
     for (const char* const name : {"x", "y", "z", "a", "b", "c"}) {
         const auto found = aggregate.named.find(name);
-        if (found == aggregate.named.end()) return leave(at);
+        if (found == aggregate.named.end()) {
+            return leave(at, "states fewer than six coordinates");
+        }
         values.push_back(found->second);
     }
     for (const auto& [name, span] : aggregate.named) {
         if (name.starts_with('e')) external.push_back(span);
     }
-    if (!are_at_rest(external)) return leave(at);
+    if (!are_at_rest(external)) return leave(at, "has an external axis that is not at 0");
     const auto turns = aggregate.named.find("t");
     add_place(values, turns == aggregate.named.end() ? std::vector<TextSpan>{}
                                                      : std::vector<TextSpan>{turns->second});
@@ -437,8 +513,12 @@ bool TargetReader::read_abb_robtarget(const std::string& text, std::size_t at) {
     constexpr std::size_t six = 6;
     const auto external =
         cursor.take(',') && cursor.take('[') ? cursor.numbers(six, ']') : std::nullopt;
-    if (!takes_places() || !external || !are_at_rest(*external)) {
-        leave(at);
+    if (!takes_places() || !external) {
+        leave_place(at, "has no six external axes");
+        return true;
+    }
+    if (!are_at_rest(*external)) {
+        leave(at, "has an external axis that is not at 0 or 9E9");
         return true;
     }
     std::vector<TextSpan> values = *position;
@@ -455,6 +535,20 @@ bool is_abb_target(std::string_view text) {
            before.find("move") != std::string::npos;
 }
 
+/// What stands before the outermost bracket that is open at this one, in its line and statement.
+std::string_view abb_statement_before(std::string_view text, std::size_t at) {
+    std::size_t outermost = at;
+    long depth = 0;  // of what is closed before
+    for (std::size_t k = at; k > 0 && text[k - 1] != ';'; --k) {
+        if (text[k - 1] == ']') ++depth;
+        if (text[k - 1] != '[') continue;
+        if (depth == 0) outermost = k - 1;
+        if (depth > 0) --depth;
+    }
+    const std::size_t begin = text.find_last_of(";\n", outermost) + 1;
+    return text.substr(begin, outermost - begin);
+}
+
 void TargetReader::read_abb() {
     const std::string text = masked(content(), '!');
     check_end(text, {"module"}, "endmodule");
@@ -462,12 +556,12 @@ void TargetReader::read_abb() {
         Cursor joints(text, at + 1);
         if (!joints.take('[')) continue;
         const std::size_t inner = joints.at();
-        const std::size_t begin = text.find_last_of(";\n", at) + 1;
+        if (Cursor(text, inner).take('[')) continue;  // an array, whose elements follow
         const auto spans = joints.numbers(count(), ']');
         if (spans && joints.take(',') && joints.take('[')) {
             add(*spans);
         } else if (!read_abb_robtarget(text, inner) &&
-                   is_abb_target(text.substr(begin, at - begin))) {
+                   is_abb_target(abb_statement_before(text, at))) {
             leave(at);
         }
     }
@@ -548,7 +642,11 @@ void TargetReader::read_ur() {
         const std::string_view word = before == 0 ? "" : word_before(text, before - 1);
         const bool is_target = (letter == '(' && is_move(word)) ||
                                (letter == '=' && names.contains(std::string(word)));
-        if (!is_target || (is_pose && !takes_places())) {
+        if (is_target && is_pose && !takes_places()) {
+            leave_place(at, "");
+            continue;
+        }
+        if (!is_target) {
             const bool is_streamed = (letter == '(' && word == "servoj") ||
                                      (letter == '=' && streamed.contains(std::string(word)));
             if (is_streamed || (is_pose && word != "set_tcp")) leave(at);  // which is the tool
@@ -602,7 +700,10 @@ TargetProgram read_program_targets(const std::string& path, ProgramFormat format
     if (format == ProgramFormat::Abb) reader.read_abb();
     if (format == ProgramFormat::Ur) reader.read_ur();
     TargetProgram program = reader.finish();
-    if (!program.places.empty()) detail::check_one_frame(path, reader.code(), format);
+    if (program.places.empty()) return program;
+    const std::string code = reader.code();
+    detail::check_one_frame(path, code, format);
+    program.tool = detail::stated_tool(code, format);
     return program;
 }
 

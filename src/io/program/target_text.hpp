@@ -62,8 +62,13 @@ std::vector<std::pair<io::TextSpan, std::string>> place_texts(const io::TargetPr
                                                               io::ProgramFormat format,
                                                               const io::CorrectedPlace& corrected);
 
-/// Throws InputError where moves to places use several tools or frames.
+/// Throws InputError where moves to places use several tools or frames, or the program shifts them.
+/// `text` is the program with blanks in the place of comments and strings, and of all of FANUC's
+/// that says nothing of tools and frames.
 void check_one_frame(const std::string& path, const std::string& text, io::ProgramFormat format);
+
+/// The tool of the moves to places, where the text states it by numbers.
+std::optional<io::StatedTool> stated_tool(const std::string& text, io::ProgramFormat format);
 
 /// Number of a span of the program.
 double number_at(const std::string& content, const io::TextSpan& span);
