@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "io/format/atomic_file.hpp"
+#include "io/program/program_text.hpp"
 #include "posewise/io/robot_programs.hpp"
 #include "program_examples.hpp"
 #include "support/temporary_folder.hpp"
@@ -321,6 +322,141 @@ TEST(EditedPrograms, MoveNoAxisThatThePlanDoesNotKnow) {
         "has J1 at 5.0");
     expect_refused(Edited(Yaskawa).replace("C00001 VJ", "C00001 EC00001 VJ"),
                    "must have none but VJ");
+}
+
+/// Moves that are none to joints, and what leads moves elsewhere, wherever it stands. What calls do
+/// is not looked at.
+TEST(EditedPrograms, AreRefusedWhereTheRobotIsMovedOtherwise) {
+    using enum ProgramFormat;
+    const std::string other = "moves the robot otherwise or leads moves elsewhere";
+    const std::string unknown = "is not known and may move the robot";
+    const std::string no_joints = "is no joint move";
+    struct Case {
+        ProgramFormat format;
+        std::string statement, words;  ///< empty: it is read
+    };
+    for (const auto& [format, statement, words] : std::vector<Case>{
+             {Abb, "TriggL p9,v100,trig1,fine,tool0;",
+              "cell.mod:7:5: has 'TriggL', which " + other},
+             {Abb, "TriggJ p9,v100,trig1,fine,tool0;", other},
+             {Abb, "TriggC p8,p9,v100,trig1,fine,tool0;", other},
+             {Abb, "ArcL p9,v100,seam1,weld1,fine,tool0;", other},
+             {Abb, "arcCStart p8,p9,v100,seam1,weld1,fine,tool0;", other},
+             {Abb, "SearchL di1,sp,p9,v100,tool0;", other},
+             {Abb, "IF di1=1 SearchC di1,sp,p8,p9,v100,tool0;", other},
+             {Abb, "EOffsSet eax;", other},
+             {Abb, "SoftAct 1,50;", other},
+             {Abb, "%\"MoveL\"% p9,v100,fine,tool0;", "whose name is calculated"},
+             {Abb, "weldTo p9,v100,gun;", "has a speed or a zone as moves have"},
+             {Abb, "gripTo p9, fast, Fine, gun;", "has a speed or a zone as moves have"},
+             {Abb, "VelSet 50,800;", ""},
+             {Abb, "PDispSet shift;", ""},  // which absolute joint moves do not follow
+             {Abb, "EOffsOff;", ""},
+             {Abb, "v100:=[100,500,5000,1000];", ""},
+             {Abb, "TPWrite \"MoveL p9,v100,fine\";", ""},
+             {Abb, "TriggIO trig1,10\\DOp:=do1,1;", ""},
+             {Abb, "LAMP 1,2;", ""},
+             {Kuka, "SCIRC XP1,XP2", no_joints},
+             {Kuka, "ASYPTP {E1 10}", no_joints},
+             {Kuka, "MOVE XP3", "poses.src:11:1: has 'MOVE', which " + unknown},
+             {Kuka, "IF $IN[1] THEN PTP XP3 ENDIF", other},
+             {Kuka, "GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM( )", ""},
+             {Kuka, "$VEL_AXIS[1]=50", ""},
+             {Kuka, "BAS (#VEL_PTP,10)", ""},
+             {Kuka, "LAMP(1,2)", ""},
+             {Ur, "optimovej(place)", other},
+             {Ur, "x = servoc(place)", other},
+             {Ur, "force_mode(p[0,0,0,0,0,0], a, b, 2, c)", other},
+             {Ur, "path_offset_enable()", other},
+             {Ur, "end_force_mode()", ""},
+             {Ur, "set_tcp(p[0, 0, 0.1, 0, 0, 0])", ""},
+             {Ur, "textmsg(\"servoj(\")", ""},
+             {Ur, "lamp(1, 2)", ""},
+             {Yaskawa, "SFTON P001", "CELL.JBI:22:1: has 'SFTON', which " + unknown},
+             {Yaskawa, "WVON WEV#(1)", unknown},
+             {Yaskawa, "SET B000 1", ""},
+             {Yaskawa, "*AGAIN", ""},
+             {Yaskawa, "CALL JOB:LAMP", ""},
+             {Fanuc, "  99:  SOFTFLOAT[1] ;", other},
+             {Fanuc, "  99:  P[2]=JPOS ;", "changes a position as the program runs"},
+             {Fanuc, "  99:S PR[2] 10mm/sec FINE ;", no_joints},
+             {Fanuc, "  99:  OFFSET CONDITION PR[1] ;", ""},  // of moves with Offset
+             {Fanuc, "  99:  PR[1]=JPOS ;", ""}}) {
+        const std::string mark = format == Fanuc     ? "   6:  !p1 ;"
+                                 : format == Kuka    ? "; p1"
+                                 : format == Abb     ? "! p1"
+                                 : format == Yaskawa ? "'p1"
+                                                     : "# p1";
+        Edited edited(format);
+        const std::string before = detail::read_file(edited.path());
+        const std::size_t at = before.find(mark);
+        ASSERT_NE(at, std::string::npos) << before;
+        edited.replace(mark, statement + "\n" + mark);
+        if (words.empty()) {
+            EXPECT_EQ(edited.error(), "no error") << statement;
+        } else {
+            EXPECT_NE(edited.error().find(words), std::string::npos)
+                << statement << ": " << edited.error();
+        }
+    }
+    expect_refused(Edited(Yaskawa).replace("'p1", "IFTHENEXP IN#(1)=ON").replace("'via", "ENDIF"),
+                   "within 'IFTHENEXP'");
+    expect_refused(Edited(Yaskawa).replace("'p1", "WHILEEXP IN#(1)=ON").replace("'via", "ENDWHILE"),
+                   "within 'WHILEEXP'");
+    expect_refused(Edited(Yaskawa).replace("GROUP1 RB1", "GROUP1 RB2"),
+                   "moves another group than the robot; must be ///GROUP1 RB1");
+    expect_refused(Edited(Yaskawa).replace("GROUP1 RB1", "GROUP1 RB1\r\n///GROUP2 ST1"),
+                   "moves another group than the robot");
+    expect_refused(Edited(Yaskawa).replace("\r\nC00001", ",5\r\nC00001"),
+                   "moves to a position of 7 axes; must be of 6");
+    EXPECT_EQ(Edited(Yaskawa).replace("\r\nC00001", ",0\r\nC00001").error(), "no error");
+    expect_refused(Edited(Fanuc).replace("1,*,*,*,*", "*,1,*,*,*"),
+                   "moves another group than the first");
+}
+
+TEST(EditedPrograms, HaveOneMoveInALine) {
+    using enum ProgramFormat;
+    expect_refused(Edited(Kuka).replace("}\n; p1", "} PTP {A1 0}\n; p1"),
+                   "has 'PTP {A1 0}' behind its target; must stand in a line of its own");
+    EXPECT_EQ(Edited(Kuka).replace("}\n; p1", "} ; PTP {A1 0}\n; p1").error(), "no error");
+    for (const std::string second : {" movej([0])", "; movej([0])", " sleep(1)"}) {
+        expect_refused(Edited(Ur).replace("r=0)", "r=0)" + second),
+                       "behind its move; must stand in a line of its own");
+    }
+    EXPECT_EQ(Edited(Ur).replace("r=0)", "r=0) # movej([0])").error(), "no error");
+    // A move in two lines.
+    expect_refused(Edited(Abb).replace("],[9E9", "],\n[9E9"),
+                   "cell.mod:6:5: goes on in the next line; must stand in one");
+    expect_refused(Edited(Ur).replace(", a=", ",\n  a="), "has no ) at its end; must have one, in");
+}
+
+TEST(EditedPrograms, OfUniversalRobotsAreCalledOnce) {
+    using enum ProgramFormat;
+    expect_refused(Edited(Ur).replace("end\ncell()", "end"),
+                   "cell.script:1:1: defines 'cell', which is never called");
+    expect_refused(Edited(Ur).replace("end\ncell()", "end\ncell()\ncell()"), "calls 'cell' again");
+    EXPECT_EQ(Edited(Ur)
+                  .replace("end\ncell()", "end\ndef lamp():\n  sync()\nend\nlamp()\ncell()\nlamp()")
+                  .error(),
+              "no error");
+    expect_refused(Edited(Ur).replace("v=0.4189", "v=60"), "has 'v=60', over 12.6 rad/s");
+}
+
+/// What a controller takes in either case.
+TEST(EditedPrograms, AreReadInSmallLetters) {
+    using enum ProgramFormat;
+    for (const ProgramFormat format : {Fanuc, Kuka, Abb, Yaskawa}) {
+        const Edited edited(format);
+        const auto wanted = edited.labels();
+        detail::write_file(edited.path(), detail::lower_case(detail::read_file(edited.path())));
+        EXPECT_EQ(edited.error(), "no error") << program_format_name(format);
+        EXPECT_EQ(edited.labels(), wanted);
+        if (format == Yaskawa) continue;
+        EXPECT_EQ(read_program_targets(edited.path(), format, edited.campaign().controller)
+                      .targets.size(),
+                  wanted.size());
+    }
+    expect_refused(Edited(Kuka).replace("PTP {A1", "ppt {a1"), "is none that is known");
 }
 
 TEST(EditedPrograms, AreReadStatementByStatement) {

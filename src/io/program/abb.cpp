@@ -114,7 +114,7 @@ void check_abb(const TextLine& line) {
         if (statement.text.ends_with(',')) continue;  // goes on in the next line
         const auto end = statement.text.data() + statement.text.size() - line.text.data();
         if (!line.text.substr(static_cast<std::size_t>(end)).starts_with(';')) {
-            throw statement.error("has no ; at its end; must have one");
+            throw statement.error("has no ; at its end; must have one, in the same line");
         }
         check_brackets(statement);
     }
@@ -135,7 +135,25 @@ void check_abb_move(const TextLine& line) {
     }
 }
 
+/// Whether a call has a speed or a zone of RAPID among its arguments, as moves and processes have.
+bool has_move_arguments(const TextLine& statement) {
+    std::string_view rest = statement.text.substr(0, statement.text.find('"'));
+    if (rest.find(":=") < rest.find(',')) return false;  // an assignment
+    while (!rest.empty()) {
+        const std::size_t comma = std::min(rest.find(','), rest.size());
+        const std::string one = lower_case(std::string(trim(rest.substr(0, comma))));
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
+        const bool is_numbered = one.size() > 1 && (one[0] == 'v' || one[0] == 'z') &&
+                                 one.find_first_not_of("0123456789", 1) == one.npos;
+        if (is_numbered || one == "vmax" || one == "fine") return true;
+    }
+    return false;
+}
+
 void check_abb_statement(const TextLine& line) {
+    if (line.begins_with("%")) {
+        throw line.error("calls a routine whose name is calculated; must be MoveAbsJ by its name");
+    }
     for (const char* const other : {"MoveJ", "MoveL", "MoveC", "MoveExtJ"}) {
         if (line.begins_with(other)) throw line.error("is no move to joints; must be MoveAbsJ");
     }
@@ -152,12 +170,19 @@ std::vector<io::ProgramStop> read_abb(const std::string& path, const ControllerJ
             if (one.begins_with("!")) {
                 stops.note(one.text.substr(1));
             } else if (one.begins_with("MoveAbsJ")) {
+                if (one.text.ends_with(',')) {
+                    throw one.error("goes on in the next line; must stand in one");
+                }
                 const std::vector<double> numbers = read_numbers(one, abb_joints(one));
                 check_abb_move(one);
                 stops.move(one, numbers);
             } else {
                 check_abb_statement(one);
                 stops.pass(one);
+                if (has_move_arguments(one)) {
+                    throw one.error(
+                        "has a speed or a zone as moves have; must be MoveAbsJ, or be removed");
+                }
             }
         }
         check_abb(line);
@@ -183,6 +208,9 @@ const ProgramKind& abb_program() {
          .waits = "WaitTime WaitDI WaitUntil Stop Break",
          .messages = "TPWrite",
          .moves = "MoveAbsJ MoveAbsJDO MoveAbsJAO MoveAbsJGO TriggAbsJ",
+         .others = "MoveL* MoveJ* MoveC* MoveExtJ TriggL* TriggJ* TriggC* TriggAbsJ ArcL* ArcC* "
+                   "SearchL SearchC SearchExtJ EOffsOn EOffsSet SoftAct IndAMove IndCMove IndDMove "
+                   "IndRMove PathRecMoveBwd PathRecMoveFwd StepBwdPath ManLoadIdProc LoadId",
          .target = "[[",
          .target_numbers = 6},
         &abb_files,

@@ -76,11 +76,12 @@ std::size_t read_fanuc_index(const TextLine& line, std::string_view text) {
 /// The joints of "J1= 10.000 deg, J2= ...". Throws InputError for axes that no plan moves, which
 /// are E1 and those of other groups, unless they are 0.
 void read_fanuc_axes(const TextLine& line, bool is_first_group, std::vector<double>& joints) {
-    std::string_view rest = line.text;
+    const std::string lower = lower_case(std::string(line.text));
+    std::string_view rest = lower;
     for (std::size_t at = rest.find('='); at != std::string_view::npos; at = rest.find('=')) {
         const std::string_view before = rest.substr(0, at);
-        const std::string_view name =
-            trim(before.substr(std::min(before.find_first_not_of(", \t"), before.size())));
+        const std::string name = upper_case(std::string(
+            trim(before.substr(std::min(before.find_first_not_of(", \t"), before.size())))));
         rest.remove_prefix(at + 1);
         const std::size_t end = std::min(rest.find("deg"), rest.find("mm"));
         const bool is_other = name.starts_with('E') || !is_first_group;
@@ -144,10 +145,11 @@ TextLine fanuc_statement(TextLine line) {
 /// The number of the position that a move, or the line that goes on with it, leads to; 0: none.
 std::size_t fanuc_move_index(const TextLine& statement) {
     const std::string_view word = first_word(statement.text);
+    const bool goes_on = is_word(word, "P");
     const std::string_view rest =
-        word == "P" ? statement.text : trim(statement.text.substr(word.size()));
-    if ((word != "P" && !is_word(word, fanuc_program().rules.moves)) || !rest.starts_with("P["))
-        return 0;
+        goes_on ? statement.text : trim(statement.text.substr(word.size()));
+    const bool is_move = goes_on || is_word(word, fanuc_program().rules.moves);
+    if (!is_move || !is_word(rest.substr(0, 2), "P[")) return 0;
     return read_fanuc_index(statement, rest.substr(2));
 }
 
@@ -236,17 +238,29 @@ std::vector<FileContent> fanuc_files(const std::string& path, const io::RobotPro
 /// Throws InputError unless the joint move ends in an exact stop at its position.
 void check_fanuc_move(const TextLine& line) {
     if (!line.has("FINE")) throw line.error("does not stop at its position; must end FINE");
-    const std::string_view options = trim(line.text.substr(line.text.find("FINE") + 4));
-    if (options.empty() || options.starts_with("ACC")) return;
+    const std::size_t fine = upper_case(std::string(line.text)).find("FINE");
+    const std::string_view options = trim(line.text.substr(fine + 4));
+    if (options.empty() || is_word(options.substr(0, 3), "ACC")) return;
     throw line.error(fmt::format(
         "has {} after FINE, which may lead elsewhere; must have none but ACC", quote(options)));
 }
 
 void check_fanuc_statement(const TextLine& line) {
-    for (const char* const other : {"L P", "C P", "A P", "J PR"}) {
+    for (const char* const other : {"L P", "C P", "A P", "S P", "J PR"}) {
         if (!line.begins_with(other)) continue;
         throw line.error("is no joint move to a position of the program; must be J P[...]");
     }
+    if (!line.begins_with("P[")) return;
+    throw line.error("changes a position as the program runs; must be removed");
+}
+
+/// Throws InputError unless the group of "DEFAULT_GROUP = 1,*,*,*,*;" that moves is the first.
+void check_fanuc_group(const TextLine& line) {
+    const std::size_t sign = line.text.find('=');
+    if (!line.begins_with("DEFAULT_GROUP") || sign == std::string_view::npos) return;
+    const std::string_view groups = trim(line.text.substr(sign + 1));
+    if (trim(groups.substr(0, groups.find_first_of(",;"))) == "1") return;
+    throw line.error("moves another group than the first, which is the robot; must be 1,*,*,*,*");
 }
 
 /// The file of the part that "CALL NAME_1" calls; empty: it calls none.
@@ -269,6 +283,7 @@ std::vector<io::ProgramStop> read_fanuc_module(const std::string& path,
         }
         return k + 1;
     };
+    for (const TextLine& line : lines) check_fanuc_group(line);
     const std::size_t end = section("/POS") - 1;
     section("/END");
     check_fanuc_positions(lines);
@@ -319,6 +334,7 @@ const ProgramKind& fanuc_program() {
                                             .leaves = "END ABORT"},
                                    .waits = "WAIT PAUSE CALL",
                                    .moves = "J L C A S",
+                                   .others = "SOFTFLOAT TRACK WEAVE TOUCH SEARCH STITCH",
                                    .target = " P["},
                                   &fanuc_files,
                                   &read_fanuc,

@@ -19,6 +19,18 @@ constexpr std::size_t other_kuka_lines = 20;  // those before the first stop, an
 
 constexpr std::string_view krl_header = "&ACCESS RVP\n&REL 1\n";
 
+constexpr std::string_view kuka_others =
+    "PTP PTP_REL SPTP SPTP_REL LIN LIN_REL SLIN SLIN_REL CIRC CIRC_REL SCIRC SCIRC_REL SPL SPL_REL "
+    "SPLINE PTP_SPLINE ASYPTP";
+/// What begins statements of KRL that are none of these, nor calls, assignments or labels.
+constexpr std::string_view kuka_harmless =
+    "DEF DEFFCT DEFDAT END ENDFCT ENDDAT GLOBAL PUBLIC DECL CONST EXT EXTFCT EXTP IMPORT ENUM "
+    "STRUC "
+    "SIGNAL INT REAL BOOL CHAR FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS LOAD IF THEN ELSE ENDIF "
+    "FOR "
+    "ENDFOR WHILE ENDWHILE LOOP ENDLOOP REPEAT UNTIL SWITCH CASE DEFAULT ENDSWITCH EXIT WAIT HALT "
+    "GOTO RETURN RESUME BRAKE CONTINUE INTERRUPT TRIGGER ANIN ANOUT DIGIN CHANNEL CONFIRM";
+
 /// Lines of one stop, each ended.
 std::string kuka_stop(const io::RobotProgram& program, const io::ProgramStop& stop) {
     const ProgramRules& rules = kuka_program().rules;
@@ -86,7 +98,7 @@ std::vector<double> read_axes(const TextLine& line) {
             continue;
         }
         const std::string name = fmt::format("A{}", numbers.size() + 1);
-        if (!one.starts_with(name)) {
+        if (upper_case(std::string(one.substr(0, name.size()))) != name) {
             throw line.error(fmt::format("has {} where {} must be", quote(one), name));
         }
         numbers.push_back(read_numbers(line, one.substr(name.size())).front());
@@ -99,10 +111,15 @@ void check_kuka_move(const TextLine& line) {
     if (line.has("C_PTP") || line.has("C_DIS")) {
         throw line.error("does not stop at its position; must have no C_PTP");
     }
+    const std::string_view behind =
+        trim(line.text.substr(std::min(line.text.find('}'), line.text.size() - 1) + 1));
+    if (behind.empty()) return;
+    throw line.error(
+        fmt::format("has {} behind its target; must stand in a line of its own", quote(behind)));
 }
 
 void check_kuka_statement(const TextLine& line) {
-    for (const char* const other : {"LIN", "CIRC", "SPL", "SPTP", "SLIN"}) {
+    for (const char* const other : {"LIN", "CIRC", "SPL", "SPTP", "SLIN", "SCIRC", "ASYPTP"}) {
         if (line.begins_with(other)) throw line.error("is no joint move; must be PTP {A1 ...}");
     }
 }
@@ -156,8 +173,9 @@ std::vector<io::ProgramStop> read_kuka_module(const std::string& path,
         } else if (line.begins_with("PTP_REL")) {
             throw line.error("is no move to joints; must be PTP {A1 ...}");
         } else if (line.begins_with("PTP")) {
-            check_kuka_move(line);
-            stops.move(line, read_axes(line));
+            const std::vector<double> numbers = read_axes(line);
+            check_kuka_move(without_comment(line));
+            stops.move(line, numbers);
         } else {
             check_kuka_statement(line);
             stops.pass(without_comment(line));
@@ -207,6 +225,8 @@ const ProgramKind& kuka_program() {
                   .modifiers = "GLOBAL"},
          .waits = "WAIT HALT",
          .moves = "PTP PTP_REL SPTP SPTP_REL LIN LIN_REL SLIN CIRC SCIRC SPL",
+         .others = kuka_others,
+         .harmless = kuka_harmless,
          .target = "{A1",
          .target_numbers = 6},
         &kuka_files,

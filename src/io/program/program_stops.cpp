@@ -29,6 +29,21 @@ std::vector<std::string_view> words_of_statement(std::string_view text) {
     return words;
 }
 
+/// Whether it is one of the words, some of which may end in *.
+bool begins_as(std::string_view text, std::string_view words) {
+    const std::string lower = lower_case(std::string(text));
+    while (!words.empty()) {
+        const std::size_t end = std::min(words.find(' '), words.size());
+        const std::string word = lower_case(std::string(words.substr(0, end)));
+        words.remove_prefix(std::min(end + 1, words.size()));
+        if (word.ends_with('*') ? lower.starts_with(word.substr(0, word.size() - 1))
+                                : lower == word) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool could_be_label(std::string_view word) {
     return !word.empty() && word.size() <= longest_label && is_identifier('_' + std::string(word));
 }
@@ -99,10 +114,38 @@ void StopCollector::check_move(const TextLine& line) {
 void StopCollector::pass(const TextLine& statement) {
     check_flow(statement);
     check_target(rules_, statement, "");  // moves do not come here
+    check_others(statement);
     const std::vector<std::string_view> words = words_of_statement(statement.text);
     if (words.empty()) return;
     if (is_word(words.front(), rules_.waits)) wait();
     if (is_word(words.front(), rules_.messages)) name_by_message(statement);
+}
+
+void StopCollector::check_others(const TextLine& statement) {
+    const std::vector<std::string_view> words = words_of_statement(statement.text);
+    if (words.empty()) return;
+    const FlowWords& flow = rules_.flow;
+    const bool is_modified = is_word(words.front(), flow.modifiers) && words.size() > 1;
+    if (is_word(words[is_modified ? 1 : 0], flow.routines)) return;
+    for (const std::string_view word : words) {
+        if (!begins_as(word, rules_.others)) continue;
+        throw statement.error(fmt::format(
+            "has {}, which moves the robot otherwise or leads moves elsewhere; must be removed",
+            quote(word)));
+    }
+    if (rules_.harmless.empty() || is_harmless(statement)) return;
+    throw statement.error(
+        fmt::format("has {}, which is not known and may move the robot; must be put right or "
+                    "removed",
+                    quote(words.front())));
+}
+
+/// Calls, assignments and labels are: what calls do is not looked at.
+bool StopCollector::is_harmless(const TextLine& statement) const {
+    const std::string_view word = first_word(statement.text);
+    if (word.empty() || is_word(word, rules_.harmless)) return true;
+    const std::string_view rest = trim(statement.text.substr(word.size()));
+    return !rest.empty() && std::string_view("=([.:").find(rest.front()) != std::string_view::npos;
 }
 
 void StopCollector::wait() {

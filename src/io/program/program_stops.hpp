@@ -27,7 +27,8 @@ class StopCollector {
     void move(const TextLine& line, const std::vector<double>& numbers);
     /// A call of a program with these stops; likewise.
     void call(const TextLine& line, const std::vector<io::ProgramStop>& stops);
-    /// Any other statement. Throws InputError at the line if it jumps, or has a move's target.
+    /// Any other statement. Throws InputError at the line if it jumps, has a move's target, or is
+    /// none of those that are known not to move the robot otherwise.
     void pass(const TextLine& statement);
     /// The robot waits at the last stop.
     void wait();
@@ -42,6 +43,8 @@ class StopCollector {
 
     void check_move(const TextLine& line);
     void check_flow(const TextLine& statement);
+    void check_others(const TextLine& statement);
+    bool is_harmless(const TextLine& statement) const;
     void open(const TextLine& statement, bool is_routine);
     void close();
     void name_by_message(const TextLine& statement);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -24,13 +23,6 @@ using detail::masked;
 using detail::ProgramRules;
 using detail::word_before;
 
-std::string upper_case(std::string text) {
-    for (char& letter : text) {
-        letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
-    }
-    return text;
-}
-
 class TargetReader {
   public:
     TargetReader(const std::string& path, ProgramFormat format, const ControllerJoints& joints,
@@ -45,7 +37,7 @@ class TargetReader {
         for (std::size_t k = 0; k < program_.content.size(); ++k) {
             if (program_.content[k] == '\n') line_begins_.push_back(k + 1);
         }
-        upper_ = upper_case(program_.content);
+        upper_ = detail::upper_case(program_.content);
     }
 
     void read_fanuc();

@@ -12,11 +12,11 @@
 namespace posewise::detail {
 namespace {
 
-char upper_case(char letter) {
+char capital(char letter) {
     return static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
 }
 
-bool is_same_letter(char a, char b) { return upper_case(a) == upper_case(b); }
+bool is_same_letter(char a, char b) { return capital(a) == capital(b); }
 
 /// Throws InputError where `number` is one that `is_possible` is not true of.
 template <typename IsPossible>
@@ -33,6 +33,11 @@ std::string lower_case(std::string text) {
     for (char& letter : text) {
         letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
     }
+    return text;
+}
+
+std::string upper_case(std::string text) {
+    std::ranges::transform(text, text.begin(), &capital);
     return text;
 }
 
@@ -71,7 +76,7 @@ std::string legal_name(std::string_view text, std::size_t longest, bool is_upper
     std::string name;
     for (const char letter : text) {
         const bool is_legal = is_identifier('_' + std::string(1, letter));
-        name += is_legal ? (is_upper ? upper_case(letter) : letter) : '_';
+        name += is_legal ? (is_upper ? capital(letter) : letter) : '_';
     }
     name.erase(0, std::min(name.find_first_not_of('_'), name.size()));
     name = name.substr(0, longest);
@@ -191,12 +196,16 @@ void check_brackets(const TextLine& statement) {
         }
     }
     if (open.empty()) return;
-    throw statement.error(fmt::format("has no {} at its end; must have one", open.back()));
+    throw statement.error(
+        fmt::format("has no {} at its end; must have one, in the same line", open.back()));
 }
 
 void check_target(const ProgramRules& rules, const TextLine& statement, std::string_view moves) {
-    const std::string_view text = statement.text.substr(0, statement.text.find('"'));
-    const std::size_t found = rules.target.empty() ? text.npos : text.find(rules.target);
+    const std::string capitals =
+        upper_case(std::string(statement.text.substr(0, statement.text.find('"'))));
+    const std::string_view text = capitals;
+    const std::size_t found =
+        rules.target.empty() ? text.npos : text.find(upper_case(std::string(rules.target)));
     if (found == text.npos || text.find('=') < found) return;
     const std::size_t end = std::min(text.find_first_of("]}", found), text.size());
     const auto commas = std::ranges::count(text.substr(found, end - found), ',');

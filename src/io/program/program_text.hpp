@@ -42,8 +42,13 @@ struct ProgramRules {
     std::string_view waits = "";     ///< begin statements at which the robot waits
     std::string_view messages = "";  ///< begin statements that show the pose's label
     std::string_view moves = "";     ///< begin statements that move, or stand before their target
-    std::string_view target = "";    ///< that moves have, and assignments
-    Index target_numbers = 0;        ///< that follow it at least
+    /// Words, wherever they stand in a statement, of moves that are not read and of what leads
+    /// moves elsewhere; * stands for any ending.
+    std::string_view others = "";
+    /// Begin the statements that do neither, beside calls, assignments and labels; empty: any may.
+    std::string_view harmless = "";
+    std::string_view target = "";  ///< that moves have, and assignments
+    Index target_numbers = 0;      ///< that follow it at least
 };
 
 struct TextLine;
@@ -67,6 +72,8 @@ inline constexpr std::size_t longest_label = 16;
 std::string lower_case(std::string text);
 /// Whether it is one of the words, which blanks separate, whatever their case.
 bool is_word(std::string_view text, std::string_view words);
+/// In capitals.
+std::string upper_case(std::string text);
 /// Letters, digits, underscores and $.
 bool is_word_letter(char letter);
 /// The word that ends just before a place, blanks between them passed over; empty: none does.

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <map>
+#include <optional>
 
 #include "core/text.hpp"
 #include "io/format/text.hpp"
@@ -14,6 +16,10 @@ namespace {
 /// The slowest joint of the arms turns at this speed, of which the program takes its per cent.
 constexpr double joint_speed = to_radians(120);  // rad/s
 constexpr double acceleration = 0.5;             // rad/s^2
+
+/// Beyond what any of the arms does: twice as fast as their fastest joints and tools.
+constexpr double fastest_joint = to_radians(720);  // rad/s
+constexpr double fastest_tool = 10;                // m/s
 
 std::string ur_stop(const io::RobotProgram& program, const io::ProgramStop& stop) {
     const ProgramRules& rules = ur_program().rules;
@@ -87,6 +93,11 @@ void check_ur_speed(const TextLine& move, const std::vector<UrArgument>& argumen
         if (one == nullptr || !one->value.ok() || one->value.value > 0) continue;
         throw move.error(fmt::format("has {}; must be above 0", quote(one->text)));
     }
+    const bool turns = first_word(move.text) == "movej";
+    const double fastest = turns ? fastest_joint : fastest_tool;
+    if (of[1] == nullptr || !of[1]->value.ok() || of[1]->value.value <= fastest) return;
+    throw move.error(fmt::format("has {}, over {:.3g} {}, which no such arm does; must be less",
+                                 quote(of[1]->text), fastest, turns ? "rad/s" : "m/s"));
 }
 
 void check_ur(const TextLine& line) {
@@ -120,6 +131,16 @@ std::string_view ur_joints(const TextLine& line) {
     return line.text.substr(open + 1, close - open - 1);
 }
 
+/// What stands behind the bracket that closes the first call.
+std::string_view behind_call(std::string_view text) {
+    long depth = 0;
+    for (std::size_t k = 0; k < text.size(); ++k) {
+        if (text[k] == '(') ++depth;
+        if (text[k] == ')' && --depth == 0) return text.substr(k + 1);
+    }
+    return {};
+}
+
 /// Throws InputError unless the blend radius is zero: "r=...", or the fifth argument.
 void check_ur_stop(const TextLine& line) {
     const std::vector<UrArgument> arguments = ur_arguments(line);
@@ -129,7 +150,50 @@ void check_ur_stop(const TextLine& line) {
         if (!is_radius || (value.ok() && value.value == 0)) continue;
         throw line.error("does not stop at its position; must have r=0");
     }
+    const std::string_view behind = trim(behind_call(line.text));
+    if (behind.empty()) return;
+    throw line.error(
+        fmt::format("has {} behind its move; must stand in a line of its own", quote(behind)));
 }
+
+/// The routine of the moves, which must run once.
+class UrRoutine {
+  public:
+    void take(const TextLine& line) {
+        const std::string_view word = first_word(line.text);
+        if (word == "def") {
+            const std::string_view rest = trim(line.text.substr(word.size()));
+            calls_.try_emplace(std::string(first_word(rest)));
+            if (!is_found_) name_ = first_word(rest);
+            line_ = is_found_ ? line_ : line;
+            return;
+        }
+        for (std::size_t at = line.text.find('('); at != line.text.npos;
+             at = line.text.find('(', at + 1)) {
+            calls_[std::string(word_before(line.text, at))].push_back(line);
+        }
+    }
+    void move() { is_found_ = true; }
+    void check() const {
+        if (!is_found_ || !line_) return;
+        const std::vector<TextLine>& calls = calls_.at(name_);
+        if (calls.empty()) {
+            throw line_->error(fmt::format(
+                "defines {}, which is never called, so that no move is made; must be, behind its "
+                "end",
+                quote(name_)));
+        }
+        if (calls.size() == 1) return;
+        throw calls[1].error(
+            fmt::format("calls {} again; must not, the poses are visited once then", quote(name_)));
+    }
+
+  private:
+    std::string name_;
+    std::optional<TextLine> line_;  ///< that defines it
+    bool is_found_ = false;
+    std::map<std::string, std::vector<TextLine>> calls_;
+};
 
 std::vector<FileContent> ur_files(const std::string& path, const io::RobotProgram& program) {
     const std::string name = io::legal_program_name(io::ProgramFormat::Ur, stem_of(path));
@@ -142,7 +206,9 @@ void check_ur_statement(const TextLine& line) {
     for (const char* const other : {"movel", "movep", "movec", "servo", "speedj", "speedl"}) {
         if (line.begins_with(other)) throw line.error("is no joint move; must be movej([...])");
     }
-    if (line.has("movej(") && !line.has("\"")) {
+    const std::size_t move = line.text.find("movej(");
+    const bool is_move = move != line.text.npos && word_before(line.text, move + 5) == "movej";
+    if (is_move && !line.has("\"")) {
         throw line.error("moves under a condition; must be movej in a line of its own");
     }
 }
@@ -150,6 +216,7 @@ void check_ur_statement(const TextLine& line) {
 std::vector<io::ProgramStop> read_ur(const std::string& path, const ControllerJoints& joints) {
     const ProgramFile file(path);
     StopCollector stops(ur_program().rules, joints);
+    UrRoutine routine;
     for (const TextLine& whole : file.lines()) {
         check_ur(whole);
         const TextLine line = without_comment(whole);
@@ -159,12 +226,16 @@ std::vector<io::ProgramStop> read_ur(const std::string& path, const ControllerJo
             const std::string_view numbers = ur_joints(line);
             check_ur_stop(line);
             stops.move(line, read_numbers(line, numbers));
+            routine.move();
         } else {
             check_ur_statement(line);
             stops.pass(line);
+            routine.take(line);
         }
     }
-    return stops.finish();
+    const std::vector<io::ProgramStop> read = stops.finish();
+    routine.check();
+    return read;
 }
 
 }  // namespace
@@ -183,6 +254,9 @@ const ProgramKind& ur_program() {
                                    .waits = "sleep popup",
                                    .messages = "textmsg popup",
                                    .moves = "movej movel movep movec servoj speedj speedl",
+                                   .others = "movej movel movep movec optimovej optimovel servo* "
+                                             "speedj speedl path_offset_* track_conveyor_* "
+                                             "force_mode freedrive_mode* teach_mode screw_driving",
                                    .target = "([",
                                    .target_numbers = 6},
                                   &ur_files,

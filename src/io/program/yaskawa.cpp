@@ -20,6 +20,15 @@ constexpr std::size_t most_yaskawa_lines = 9999;
 constexpr std::size_t other_yaskawa_lines = 3;  // before the first stop, and END
 constexpr double most_pulses = 2147483647;
 
+/// What begins instructions of INFORM that neither move nor shift.
+constexpr std::string_view yaskawa_harmless =
+    "NOP END RET ABORT CALL PAUSE TIMER WAIT CWAIT MSG PRINT CLEAR DOUT DIN PULSE AOUT AOUTON "
+    "ARATION ARATIOF SET SETE SETFILE GETE GETS GETPOS GETFILE INC DEC ADD SUB MUL DIV AND OR NOT "
+    "XOR "
+    "CNVRT MFRAME MULMAT INVMAT SIN COS ATAN SQRT SETREG GETREG ADVINIT ADVSTOP VALUE STRVAL CHR$ "
+    "MID$ ASC LEN CAT$ SPEED COMM IFTHEN IFTHENEXP ELSEIF ELSEIFEXP ELSE ENDIF FOR NEXT WHILE "
+    "WHILEEXP ENDWHILE SWITCH CASE DEFAULT ENDSWITCH FUNCTION PSTART PWAIT UALM HAND HSEN SFTOF";
+
 std::string pulses_text(const ControllerJoints& joints, const VectorXd& values) {
     std::string text;
     for (Index i = 0; i < values.size(); ++i) {
@@ -53,10 +62,19 @@ std::string yaskawa_stop(const io::RobotProgram& program, const io::ProgramStop&
 std::string position_name(const TextLine& line, std::size_t begin) {
     const std::string_view rest = line.text.substr(begin);
     const std::size_t end = std::min(rest.find_first_of(" =\t"), rest.size());
-    return std::string(rest.substr(0, end));
+    return upper_case(std::string(rest.substr(0, end)));
 }
 
-std::vector<double> degrees_of(const std::vector<double>& pulses, const ControllerJoints& joints) {
+/// Throws InputError for pulses behind those of the robot's joints that are not 0.
+std::vector<double> degrees_of(const TextLine& move, const std::vector<double>& pulses,
+                               const ControllerJoints& joints) {
+    const auto is_moved = [](double one) { return one != 0; };
+    const auto others = std::min(joints.count(), std::ssize(pulses));
+    if (std::any_of(pulses.begin() + others, pulses.end(), is_moved)) {
+        throw move.error(fmt::format(
+            "moves to a position of {} axes; must be of {}, as the robot has, or the others 0",
+            pulses.size(), joints.count()));
+    }
     std::vector<double> degrees;
     for (std::size_t i = 0; i < pulses.size() && std::ssize(degrees) < joints.count(); ++i) {
         degrees.push_back(to_degrees(pulses[i] / joints.pulses_per_unit()[static_cast<Index>(i)]));
@@ -70,7 +88,8 @@ void check_yaskawa_move(const TextLine& line) {
     std::string_view rest = line.text;
     for (int position = 0; !rest.empty(); ++position) {
         const std::size_t blank = std::min(rest.find_first_of(" \t"), rest.size());
-        const std::string_view word = rest.substr(0, blank);
+        const std::string capitals = upper_case(std::string(rest.substr(0, blank)));
+        const std::string_view word = capitals;
         rest = trim(rest.substr(blank));
         if (position < 2) continue;
         if (word.starts_with("VJ=")) check_percent(line, word, word.substr(3));
@@ -85,7 +104,8 @@ void check_yaskawa_move(const TextLine& line) {
 
 /// Throws InputError unless "///NPOS 12,0,0,..." counts the positions.
 void check_count(const TextLine& line, std::size_t count) {
-    const double stated = read_numbers(line, line.text.substr(line.text.find("NPOS") + 4)).front();
+    const double stated =
+        read_numbers(line, line.text.substr(std::string_view("///NPOS").size())).front();
     if (stated == static_cast<double>(count)) return;
     throw line.error(fmt::format(
         "counts {} positions where the job states {}; lines were lost or added", stated, count));
@@ -95,6 +115,13 @@ void check_count(const TextLine& line, std::size_t count) {
 void check_kind(const TextLine& line) {
     if (line.begins_with("///POSTYPE") && !line.has("PULSE")) {
         throw line.error("states positions that are no joints; must be ///POSTYPE PULSE");
+    }
+    if (line.begins_with("///GROUP")) {
+        const std::string_view group = first_word(line.text.substr(3));
+        const std::string_view robot = first_word(trim(line.text.substr(3 + group.size())));
+        if (!is_word(group, "GROUP1") || !is_word(robot, "RB1")) {
+            throw line.error("moves another group than the robot; must be ///GROUP1 RB1");
+        }
     }
     for (const char* const other : {"MOVL", "MOVC", "MOVS", "IMOV"}) {
         if (line.begins_with(other)) throw line.error("is no joint move; must be MOVJ");
@@ -175,7 +202,7 @@ std::vector<io::ProgramStop> read_yaskawa_job(const std::string& path,
                 throw line.error(
                     "moves to a position that the job does not state; must be like MOVJ C00000");
             }
-            stops.move(line, degrees_of(found->second, joints));
+            stops.move(line, degrees_of(line, found->second, joints));
         } else if (const std::string part = called_yaskawa_part(path, line);
                    has_parts && !part.empty()) {
             stops.call(line, read_part(line, part, joints, &read_yaskawa_job));
@@ -204,11 +231,12 @@ const ProgramKind& yaskawa_program() {
                                    .is_upper = true,
                                    .wait_step = 0.01,
                                    .longest_wait = 655.35,  // 2^16 - 1 steps
-                                   .flow = {.opens = "IFTHEN FOR WHILE SWITCH",
+                                   .flow = {.opens = "IFTHEN IFTHENEXP FOR WHILE WHILEEXP SWITCH",
                                             .closes = "ENDIF NEXT ENDWHILE ENDSWITCH",
                                             .jumps = "JUMP",
                                             .leaves = "RET ABORT"},
                                    .waits = "TIMER PAUSE WAIT CALL",
+                                   .harmless = yaskawa_harmless,
                                    .target = " C0"},
                                   &yaskawa_files,
                                   &read_yaskawa};
