@@ -341,6 +341,9 @@ TEST(ProgramPlaces, AreOfOneToolAndFrame) {
     expect(Fanuc, "/POS", "   2:  UTOOL_NUM=2 ;\n   3:  !UTOOL_NUM=4 ;\n/POS", "no error");
     expect(Fanuc, "/POS", "   2:  UFRAME_NUM = 4 ;\n/POS", "several frames, '1' and '4'");
     expect(Abb, "MoveL [", "TriggL p1,v100,t,fine,gun;\n MoveL [", "several tools, 'gun'");
+    expect(Abb, "MoveL [", "MoveLDO p1,v100,fine,torch\\WObj:=table,do1,on;\n MoveL [", "no error");
+    expect(Abb, "MoveL [", "MoveJSync p1,v100,fine,gun,\"lamp\";\n MoveL [",
+           "several tools, 'gun'");
     // What shifts places, or calculates where they are.
     expect(Kuka, "PTP {", "$BASE.X=$BASE.X+10\nPTP {", "poses.src:5: calculates '$base.x'");
     expect(Kuka, "PTP {", "$BASE=BASE_DATA[1]:OFFS\nPTP {", "calculates '$base'");

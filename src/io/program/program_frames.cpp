@@ -189,6 +189,12 @@ void for_each_abb_move(const std::string& text,
 
 /// The last argument but for a work object and what is optional.
 std::string abb_tool(std::string_view move) {
+    const std::string_view word = first_word(move);
+    int behind_tool = word.ends_with("sync") ? 1 : 0;  // the routine
+    for (const char* const output : {"do", "ao", "go"}) {
+        if (word.ends_with(output)) behind_tool = 2;  // the signal and its value
+    }
+    for (; behind_tool > 0; --behind_tool) move = move.substr(0, move.rfind(','));
     move = move.substr(0, move.find("\\wobj"));
     const std::size_t comma = move.rfind(',');
     if (comma == move.npos) return "";
@@ -208,8 +214,7 @@ void read_abb_frames(const std::string& text, Frames& frames) {
         std::erase_if(words, [](char letter) { return letter == ' ' || letter == '\t'; });
         frames.add_frame(behind(words, "\\wobj:=", ",\\\r\n"));
         const std::string tool = abb_tool(move);
-        if (!is_identifier(tool)) return;  // the output of MoveLDO
-        frames.add_tool(tool);
+        if (is_identifier(tool)) frames.add_tool(tool);
     });
 }
 
