@@ -37,7 +37,7 @@ VALUES = {
     "--moved": "base", "--only": "base", "--alpha": "0.5", "--max-iterations": "2", "--length-error-percent": "10",
     "--angle-error-deg": "5", "--search": "cmaes", "--method": "two-step", "--validate": "few.csv", "--predict": "poses.csv",
     "--predict-out": "out3.csv", "--folds": "3", "--loss": "cauchy", "--loss-width": "2", "--refit": "base",
-    "--validate-campaign": "arm.yaml", "--dh": "out2.yaml", "--urdf": "out2.urdf", "--ur-kinematics": "out3.yaml", "--mujoco": "out8.xml", "--robodk": "out9.py",
+    "--validate-campaign": "arm.yaml", "--dh": "out2.yaml", "--urdf": "out2.urdf", "--ur-kinematics": "out3.yaml", "--mujoco": "out8.xml", "--robodk": "out9.py", "--offsets": "out10.csv",
     "--geometry": "estimate", "--map": "out7.c", "--base": "campaign", "--tool-mm": "10,20,300", "--mm-per-mrad": "2", "--largest-change-deg": "0.001",
     "--largest-change-mm": "1", "--tool-target": "1", "--tool-rpy-deg": "10,0,0", "--frame": "world", "--frame-mm": "0,0,20",
     "--frame-rpy-deg": "0,0,5", "--near": "10,5,5", "--splits": "3", "--holdout": "0.5", "--models": "geometric", "--trials": "3",

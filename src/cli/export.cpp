@@ -42,6 +42,10 @@ a program that adds the other errors itself.
 posewise_joints_to_send(), or its table (.csv). The file says how it is used; what is left at random
 configurations is printed and stands in it.
 
+--offsets writes, for mastering, how far each joint of the controller stands from where it is sent
+(deg or mm, and pulses where the campaign states them), with its deviation: sent to 0 it stands at the
+offset. calibrate --csv writes the same.
+
 --camera writes where a camera found camera and board: a file of OpenCV's with its intrinsic
 parameters and both frames as matrices (.yaml), or fixed joints for a URDF (.urdf). The arguments of
 ROS 2's static_transform_publisher are printed.
@@ -152,9 +156,9 @@ void export_estimate(const ExportArguments& arguments, const CommonOptions& comm
     const bool has_geometry =
         !(paths.urdf.empty() && paths.dh.empty() && paths.ur_kinematics.empty() &&
           paths.mujoco.empty() && paths.robodk.empty());
-    if (!has_geometry && paths.map.empty() && paths.camera.empty()) {
+    if (!has_geometry && (paths.map + paths.camera + paths.offsets).empty()) {
         throw CLI::RequiredError(
-            "--urdf, --dh, --ur-kinematics, --mujoco, --robodk, --map or --camera");
+            "--urdf, --dh, --ur-kinematics, --mujoco, --robodk, --map, --offsets or --camera");
     }
     if (!paths.camera.empty()) io::check_camera_path(paths.camera);
     if (!paths.map.empty()) {
@@ -168,7 +172,7 @@ void export_estimate(const ExportArguments& arguments, const CommonOptions& comm
     const io::CampaignFile file = io::read_campaign(arguments.campaign);
     check_outputs({&file}, {arguments.estimate, arguments.workspace},
                   {paths.urdf, paths.dh, paths.ur_kinematics, paths.mujoco, paths.robodk, paths.map,
-                   paths.camera},
+                   paths.offsets, paths.camera},
                   common);
     if (!paths.urdf.empty() && !file.urdf) {
         throw input_error_at({arguments.campaign},
@@ -180,10 +184,12 @@ void export_estimate(const ExportArguments& arguments, const CommonOptions& comm
                              "has no camera; --camera is for sensor.kind camera, or poses of a "
                              "board that a camera sees");
     }
-    const Parameters found =
-        read_usable_estimate(arguments.estimate, file, arguments.is_forced).parameters;
-    io::ExportedRobot robot = make_robot(arguments, file, found);
+    const Estimate estimate = read_usable_estimate(arguments.estimate, file, arguments.is_forced);
+    io::ExportedRobot robot = make_robot(arguments, file, estimate.parameters);
     write_files(paths, file, robot);
+    if (!paths.offsets.empty()) {
+        io::write_offsets_csv(paths.offsets, file, estimate, file.controller);
+    }
     warn_of(robot, paths);
     if (common.json) return print_document(io::to_json(robot, file));
     print_export(robot, file, paths);
@@ -209,6 +215,8 @@ void add_export(CLI::App& program, const CommonOptions& common) {
              "Write it as a script that sets the parameters of a robot in RoboDK (Python)");
     add_file("--map", arguments->paths.map,
              "Write what depends on the configuration for a cell's own software: .c or .csv");
+    add_file("--offsets", arguments->paths.offsets,
+             "Write the offset of each joint of the controller, as for mastering (CSV)");
     add_file("--camera", arguments->paths.camera,
              "Write where camera and board are: .yaml (OpenCV) or .urdf (fixed joints)");
     command

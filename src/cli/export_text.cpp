@@ -168,6 +168,10 @@ void print_export(const io::ExportedRobot& robot, const io::CampaignFile& file,
     }
     if (robot.map) print_map(*robot.map, file, paths.map);
     if (robot.camera) print_camera(*robot.camera, file, paths.camera);
+    if (!paths.offsets.empty()) {
+        print(fmt::format("{}: how far joints stand from where they are sent is in {}\n", file.name,
+                          detail::escape_controls(paths.offsets)));
+    }
     print_loss(robot);
     print_places(robot.written(), file.urdf && robot.urdf ? "where the instrument sees base link " +
                                                                 detail::quote(file.urdf->base_link)

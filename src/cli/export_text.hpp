@@ -16,6 +16,7 @@ struct ExportPaths {
     std::string robodk;
     std::string map;
     std::string camera;
+    std::string offsets;
 };
 
 /// Warnings about numbers that are easily taken for something else.

@@ -225,6 +225,8 @@ TEST_F(Calibrate, WritesTheOffsetsOfThePendantsJoints) {
                    "controller: {maker: fanuc, j23_factor: 1, pulses_per_deg: [1e6, 1e6, 1e6, 1e6, "
                    "1e6, 1e6]}\n");
     run_well("calibrate pendant.yaml -m s.csv --folds 0 --csv o.csv -o f.json");
+    run_well("export pendant.yaml f.json --offsets again.csv");
+    EXPECT_EQ(text_of("again.csv"), text_of("o.csv"));
     const Json robot = Json::parse(text_of("f.json")).at("robot");
     const double q2 = robot.at("dq2").at("value_rad");
     // Joint 3 turns against its element.

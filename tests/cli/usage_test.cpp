@@ -138,7 +138,7 @@ const std::vector<std::pair<std::string, std::string>> wrong_usage{
      "--drop: is 'p1,'; must be names separated by commas, none empty"},
     {"verify", "PLAN is required"},
     {"export a.yaml b.json",
-     "--urdf, --dh, --ur-kinematics, --mujoco, --robodk, --map or --camera is required"},
+     "--urdf, --dh, --ur-kinematics, --mujoco, --robodk, --map, --offsets or --camera is required"},
     {"export a.yaml b.json --dh c --geometry best", "--geometry: best not in {nearest,estimate}"},
     {"program a.json", "--for is required"},
     {"program a.json --for fanuc", "--out is required"},
