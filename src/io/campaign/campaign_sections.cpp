@@ -16,8 +16,8 @@ constexpr double least_amount = 1e-12;  // m or rad
 }  // namespace
 
 double largest_error(Quantity quantity) {
-    constexpr double longest = 10;  // m
-    return quantity == Quantity::Angle ? std::numbers::pi : longest;
+    constexpr double largest_length = 10;  // m
+    return quantity == Quantity::Angle ? std::numbers::pi : largest_length;
 }
 
 bool is_plausible_amount(double si, double largest) { return si >= least_amount && si <= largest; }

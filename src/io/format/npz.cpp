@@ -115,7 +115,7 @@ std::string npz_text(const std::string& variable, const std::string& npy) {
     // What the entry's own header and the directory have in common: version 2.0, not packed, the
     // first day of 1980.
     std::string entry;
-    for (const std::uint64_t number : {20, 0, 0, 0, 0x21}) append_number(entry, number, 2);
+    for (const std::uint64_t number : {20U, 0U, 0U, 0U, 0x21U}) append_number(entry, number, 2);
     for (const std::uint64_t number : {sum, std::uint64_t{npy.size()}, std::uint64_t{npy.size()}}) {
         append_number(entry, number, 4);
     }
@@ -130,7 +130,7 @@ std::string npz_text(const std::string& variable, const std::string& npy) {
     text += name;
     const std::size_t directory_size = text.size() - directory;
     text += "PK\5\6";
-    for (const std::uint64_t number : {0, 0, 1, 1}) append_number(text, number, 2);
+    for (const std::uint64_t number : {0U, 0U, 1U, 1U}) append_number(text, number, 2);
     append_number(text, directory_size, 4);
     append_number(text, directory, 4);
     append_number(text, 0, 2);

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <map>
-#include <ranges>
 #include <string>
 
 #include "io/format/text.hpp"
@@ -121,10 +120,14 @@ NotedConditions mean_conditions(const Notes& times, const Notes& temperatures) {
         return *seconds + midnights;
     };
     if (auto means = means_of(times, read_time); means && !means->empty()) {
-        const auto [first, last] = std::ranges::minmax(std::views::values(*means));
+        const auto is_earlier = [](const auto& one, const auto& other) {
+            return one.second < other.second;
+        };
+        const auto [earliest, latest] = std::ranges::minmax_element(*means, is_earlier);
+        const double first = earliest->second;
+        noted.times = {clock.value_or(""), first, latest->second};
         for (auto& [id, seconds] : *means) seconds = (seconds - first) / seconds_per_hour;
         noted.conditions.push_back({"time", "h", *means});
-        noted.times = {clock.value_or(""), first, last};
     }
     const auto read_degrees = [](std::string_view text) -> std::optional<double> {
         const ParsedNumber number = parse_number(text);
@@ -143,7 +146,8 @@ void keep_conditions(NotedConditions noted, bool has_time, bool has_temperature,
     for (const auto& [column, is_there] :
          {std::pair{time_column, has_time}, std::pair{temperature_column, has_temperature}}) {
         const bool is_read = std::ranges::any_of(
-            file.conditions, [&](const Condition& one) { return column.starts_with(one.name); });
+            file.conditions,
+            [&column = column](const Condition& one) { return column.starts_with(one.name); });
         if (is_there && !is_read) file.unused_columns.emplace_back(column);
     }
 }

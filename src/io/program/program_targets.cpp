@@ -71,9 +71,9 @@ class TargetReader {
                 fmt::format("{} that can be corrected; must have one: the first of {} that stay {}",
                             what, program_.others.size(), reasons_.at(*first)));
         }
-        std::ranges::sort(program_.others);
-        const auto repeated = std::ranges::unique(program_.others);
-        program_.others.erase(repeated.begin(), repeated.end());
+        auto& others = program_.others;
+        std::ranges::sort(others);
+        others.erase(std::unique(others.begin(), others.end()), others.end());
         return program_;
     }
 

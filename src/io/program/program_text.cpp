@@ -155,7 +155,8 @@ bool TextLine::begins_with(std::string_view word) const {
 }
 
 bool TextLine::has(std::string_view word) const {
-    return !std::ranges::search(text, word, is_same_letter).empty();
+    return std::search(text.begin(), text.end(), word.begin(), word.end(), is_same_letter) !=
+           text.end();
 }
 
 ProgramFile::ProgramFile(const std::string& path) {

@@ -118,7 +118,8 @@ std::vector<CureTrial> list_trials(const Doubted& doubted, const Doubts& doubts,
     const Campaign& campaign = doubted.campaign;
     std::vector<CureTrial> trials;
     const auto add = [&](Remedy remedy, const Campaign& other) -> CureTrial& {
-        return trials.emplace_back(std::move(remedy), other, doubted.measurements, doubted.options);
+        trials.push_back({std::move(remedy), other, doubted.measurements, doubted.options});
+        return trials.back();
     };
     const bool has_squares = doubted.options.loss.kind == LossKind::Squares;
     if (has_squares) {

@@ -131,7 +131,7 @@ ResidualLook look_at_residuals(const Campaign& campaign, const Measurements& mea
         measurements.configuration_count() < least_configurations) {
         return look;
     }
-    std::optional<Fitted> fitted(std::in_place, campaign, measurements, estimate);
+    std::optional<Fitted> fitted(Fitted{campaign, measurements, estimate});
     look.rounded = detail::find_rounded_joints(*fitted);
     look.rounded_readings = detail::find_rounded_readings(*fitted);
     if (estimate.loss.kind == LossKind::Squares) look.outlying = take_out_outlying(fitted);

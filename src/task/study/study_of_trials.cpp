@@ -46,7 +46,7 @@ std::vector<StudyRow> measured_rows(const TrialSeries& series, const TrialTable&
     std::vector<StudyRow> finished;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         auto& [optimal, random, open] = rows[i];
-        const auto is_open = [&](const StudyCase& one) {
+        const auto is_open = [&open = open](const StudyCase& one) {
             return open[static_cast<std::size_t>(one.split)] > 0;
         };
         std::erase_if(optimal, is_open);
