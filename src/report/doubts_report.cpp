@@ -256,7 +256,7 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     const std::string at = measurements.empty() ? "" : measurements + ": ";
     std::vector<std::string> sentences;
     const bool has_moved = calibration.moved_since.has_value();  // much follows from it
-    if (doubts.misfit && !has_moved) {
+    if (doubts.misfit && !doubts.look.shifted && !has_moved) {
         sentences.push_back(at + describe_misfit(calibration.campaign, *doubts.misfit));
     }
     if (!doubts.planes.empty()) sentences.push_back(at + describe_planes(doubts.planes));

@@ -133,6 +133,27 @@ TEST(CameraDoubt, NamesTheScatterOfCorners) {
     }
 }
 
+TEST(FindDoubts, NamesTheRowsWhoseJointsComeAViewLate) {
+    const auto& [campaign, measured] = good();
+    Measurements late = measured;
+    const Index last = late.configurations.rows() - 1;
+    late.configurations.bottomRows(last) = measured.configurations.topRows(last);
+    const auto doubts_of = [&](const Measurements& one) {
+        const Parameters at = registered(campaign, one);
+        return find_doubts(campaign, one, at,
+                           make_metrics(mean_residuals(campaign, at, one), *campaign.sensor));
+    };
+    EXPECT_FALSE(doubts_of(measured).look.shifted);
+    const Doubts doubts = doubts_of(late);
+    ASSERT_TRUE(doubts.look.shifted);
+    EXPECT_EQ(doubts.look.shifted->first, measured.ids[1]);
+    EXPECT_EQ(doubts.look.shifted->shift, -1);
+    EXPECT_LT(doubts.look.shifted->after, 0.1 * doubts.look.shifted->before);
+    // Both would be looked for elsewhere.
+    EXPECT_TRUE(doubts.views.empty());
+    EXPECT_FALSE(doubts.camera);
+}
+
 TEST(SizeDoubts, NameAMarkerThatIsFarFromItsPlace) {
     Campaign campaign = before_camera(tracked_campaign(fanuc()), camera_before_cube());
     const Measurements measured =
@@ -327,7 +348,7 @@ TEST(CameraDoubt, NamesAMirroredImageWhereTheLensIsFound) {
     const auto& [campaign, measured] = good();
     CameraSetup unknown = setup_of(campaign);
     unknown.is_known.assign(unknown.intrinsics.names().size(), false);
-    const Campaign stated = with_setup(campaign, unknown);
+    const Campaign stated = before_camera(tracked_campaign(fanuc()), unknown);
     Parameters at = registered(stated, measured);
     EXPECT_FALSE(find_camera_doubt(stated, measured, at)->focal_lengths);
     const auto& sensor = dynamic_cast<const CameraSensor&>(*stated.sensor);

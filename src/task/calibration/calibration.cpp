@@ -161,9 +161,10 @@ void look(const Work& work, Calibration& result) {
         doubts.look = look_at_residuals(work.campaign, work.used, result.estimate);
     }
     if (!doubts.misfit && !doubts.gross_error) return;
+    const bool has_pixels = work.campaign.sensor->has_only_pixels();
     const bool is_explained = doubts.misfit && (doubts.misfit->reading || doubts.misfit->image);
-    if (work.campaign.sensor->has_only_pixels() && is_explained) return;
-    doubts.look.shifted = find_shifted_rows(work.campaign, work.used);
+    if (has_pixels && is_explained) return;
+    if (!has_pixels) doubts.look.shifted = find_shifted_rows(work.campaign, work.used);
     if (!doubts.look.shifted && !doubts.look.outlying) {
         doubts.look.outlying = find_gross_configurations(work.campaign, work.used, result.estimate);
     }

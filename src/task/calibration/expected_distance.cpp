@@ -1,6 +1,7 @@
 #include "expected_distance.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "calibrator/least_squares.hpp"
 #include "core/decompositions.hpp"
@@ -65,6 +66,15 @@ double largest_left_over(const Campaign& campaign, const Parameters& at,
     none.covariance = along * along.transpose();
     problem.units.unscale(none.covariance);
     return expected_error(complete, none, measured, is_angle).total();
+}
+
+double credible_distance(const Campaign& campaign, const Measurements& measured) {
+    const Sensor& sensor = *campaign.sensor;
+    if (sensor.has_lengths()) return credible_errors * expected_distance(campaign, measured);
+    // Beside a wrong place of the camera it would be any number of pixels.
+    const bool is_stated = campaign.has_nominal_base && campaign.has_nominal_targets;
+    if (!sensor.has_only_pixels() || !is_stated) return std::numeric_limits<double>::infinity();
+    return credible_errors * largest_left_over(campaign, campaign.nominal, measured, true);
 }
 
 }  // namespace posewise::detail

@@ -23,4 +23,8 @@ double expected_distance(const Campaign& campaign, const Measurements& measured)
 double largest_left_over(const Campaign& campaign, const Parameters& at,
                          const Measurements& measured, bool is_angle);
 
+/// Half of the points (m) or corners (1000 px) may be off by so much. Infinite where it is not
+/// known: of other angles, and of a camera whose place is not stated.
+double credible_distance(const Campaign& campaign, const Measurements& measured);
+
 }  // namespace posewise::detail

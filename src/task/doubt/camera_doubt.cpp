@@ -11,6 +11,7 @@
 #include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/sensors.hpp"
 #include "posewise/task/doubts.hpp"
+#include "task/calibration/expected_distance.hpp"
 
 namespace posewise {
 namespace {
@@ -100,7 +101,8 @@ void find_board_factor(const Campaign& campaign, const CameraSensor& camera, Ope
     const double misfit = std::min(misfit_of(campaign, measured, stated.parameters),
                                    misfit_of(campaign, measured, registered_as_stated));
     const double scaled_misfit = misfit_of(open.campaign, measured, scaled.parameters);
-    if (!(scaled_misfit < misfit)) return;  // something else is wrong
+    const double credible = detail::credible_distance(campaign, measured);
+    if (!(scaled_misfit < misfit && scaled_misfit < credible)) return;  // something else is wrong
     doubt.misfit = misfit;
     doubt.scaled_misfit = scaled_misfit;
     doubt.board_factor = factor;

@@ -232,6 +232,9 @@ Doubts find_doubts(const Campaign& campaign, const Measurements& measurements,
             (misfit->reading || misfit->image || misfit->camera || misfit->is_between_cameras)) {
             return doubts;
         }
+        // Rows of other poses also look like views of another place, or a board of another size.
+        if (misfit) doubts.look.shifted = find_shifted_rows(campaign, measurements);
+        if (doubts.look.shifted) return doubts;
     }
     const auto parts = detail::parts_alone(campaign, measurements, registered);
     for (const detail::PartAlone& part : parts) {

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "calibrator/part_alone.hpp"
 #include "core/format.hpp"
@@ -35,13 +34,6 @@ std::vector<std::string> describe_as_well(const Campaign& campaign,
     return words;
 }
 
-/// Half of the points may be off by so much.
-double credible_distance(const Campaign& campaign, const Measurements& measurements) {
-    return campaign.sensor->has_lengths()
-               ? detail::credible_errors * detail::expected_distance(campaign, measurements)
-               : std::numeric_limits<double>::infinity();
-}
-
 }  // namespace
 
 ReadingSearch search_readings(const Campaign& stated, const Measurements& all,
@@ -65,7 +57,7 @@ ReadingSearch search_readings(const Campaign& stated, const Measurements& all,
                                 fit_alike(reading, readings.front())});
     }
     const FittedReading* const better =
-        find_clearly_better(readings, credible_distance(campaign, measurements));
+        find_clearly_better(readings, detail::credible_distance(campaign, measurements));
     if (better == nullptr) return search;
     search.better = {describe(better->changes, campaign, measurements.notation),
                      describe_cure(better->changes, campaign),
@@ -78,13 +70,13 @@ ReadingSearch search_readings(const Campaign& stated, const Measurements& all,
 }
 
 std::string describe(const BetterReading& reading) {
-    constexpr std::size_t shown = 3;
+    constexpr std::size_t most = 3;
     std::string others;
-    for (std::size_t k = 0; k < std::min(shown, reading.as_well.size()); ++k) {
+    for (std::size_t k = 0; k < std::min(most, reading.as_well.size()); ++k) {
         others += ", or as well with " + reading.as_well[k];
     }
-    if (reading.as_well.size() > shown) {
-        others += fmt::format(" and {} more", reading.as_well.size() - shown);
+    if (reading.as_well.size() > most) {
+        others += fmt::format(" and {} more", reading.as_well.size() - most);
     }
     std::vector<std::string> figures;
     const auto compare = [&](double found, double stated, const char* unit) {
