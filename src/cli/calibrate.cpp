@@ -41,8 +41,8 @@ readings) from nothing, then identifies all parameters together, and prints
 What did not converge, has errors fifty times their expected size or a joint offset beyond 10 deg,
 leaves more over than a robot misses before it is calibrated, is spoilt by one configuration, or
 predicts poses that were held out worse than the nominal robot does, is printed and not written, with
-exit code 3; --force writes it, marked. Where something is doubtful, robust losses, --exclude and
-richer errors are tried, and those that help are named with the error held out.
+exit code 3; --force writes it, marked. Where something is doubtful, robust losses, --exclude,
+richer errors and intrinsics found anew are tried; those that help are named with the error held out.
 With a prior the calibration learns how large the errors of each class are. It starts from the
 expected sizes; few poses move them a little, many freely. It prints both; --sizes stated keeps the
 expected ones, as is usual where corners in pixels are measured.

@@ -8,7 +8,7 @@
 #include "common.hpp"
 #include "core/text.hpp"
 #include "files.hpp"
-#include "io/format/units.hpp"
+#include "io/measurements/points_list.hpp"
 #include "options.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/io/result_files.hpp"
@@ -81,8 +81,8 @@ void add_points_options(CLI::App& command, std::string& plan, std::string& point
         ->check(file_name());
     command
         .add_option("--points-unit", points_unit,
-                    "Unit of a list of points that does not state it: mm, m or um")
-        ->check(CLI::IsMember(detail::unit_names(detail::Quantity::Length)));
+                    "Unit of a list of points that does not state it: mm, m, um or inch")
+        ->check(CLI::IsMember(detail::point_unit_names()));
 }
 
 InputPaths pair_with_plans(InputPaths paths, const std::vector<std::string>& measurements,

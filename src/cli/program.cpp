@@ -374,6 +374,7 @@ void read_program(const ProgramArguments& arguments, const CommonOptions& common
         arguments.read, io::read_robot_program(arguments.read, format, campaign.controller),
         campaign, steps, sent);
     warn_of_faults(content);
+    warn_of_coupling(campaign, format);
     if (!arguments.out.empty()) io::write_program_content(arguments.out, campaign, content);
     if (common.json) return print_document(io::to_json(content, campaign));
     print(fmt::format("{}: {}\n", detail::escape_controls(arguments.read),

@@ -294,10 +294,15 @@ std::vector<std::string> describe_doubts(const Calibration& calibration,
     if (doubts.lacks_length) sentences.push_back(describe_no_length(*calibration.campaign.sensor));
     if (doubts.distance) sentences.push_back(at + describe_distance(*doubts.distance));
     if (doubts.small_residuals) {
+        const bool is_of_model = calibration.campaign.robot.parameter_count() > 0 &&
+                                 calibration.nominal.rms() < 2 * calibration.estimate.fit.rms();
         sentences.push_back(
             fmt::format("the residuals are {} times what sigma and model error say: is one of them "
-                        "stated in um? Then sigma_um or model_error_um is its key",
-                        detail::format_short(*doubts.small_residuals, 2)));
+                        "stated in um? Then sigma_um or model_error_um is its key{}",
+                        detail::format_short(*doubts.small_residuals, 2),
+                        is_of_model ? ". Nor does the nominal robot miss them by more: were they "
+                                      "measured, or are they where a plan expects the targets?"
+                                    : ""));
     }
     if (calibration.moved) {
         sentences.push_back(

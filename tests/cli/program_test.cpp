@@ -278,6 +278,8 @@ TEST_F(ProgramCommand, WarnsWhereNobodySaysHowAFanucCountsJ3) {
     write_cell("plain.yaml", "{}");
     const Outcome unstated = run("program p.json --campaign plain.yaml --for fanuc -o A.ls");
     EXPECT_NE(unstated.err.find(warning), std::string::npos) << unstated.err;
+    const Outcome read = run("program plain.yaml --for fanuc --read A.ls");
+    EXPECT_NE(read.err.find(warning), std::string::npos) << read.err;
     write_cell("stated.yaml", "{maker: fanuc, j23_factor: 0}");
     for (const std::string other :
          {"plain.yaml --for abb -o a.mod", "stated.yaml --for fanuc -o B.ls"}) {

@@ -182,8 +182,10 @@ TEST(ReadCamera, SaysWhatIsWrong) {
     expect_error("columns: 3", "columns: x", "must be a whole number from 2 to 1000");
     expect_error("square_mm: 25", "square_mm: 25, first_point: 9223372036854775808",
                  "must be from 0 to 1");
-    expect_error("square_mm: 25", "square_mm: 1e-9",
-                 "square_mm is '1e-9'; must be from 0.01 to 10000 mm, as what can be printed");
+    expect_error(
+        "square_mm: 25", "square_mm: 1e-9",
+        "square_mm is '1e-9'; must be from 0.2 to 10000 mm, as what can be printed (in metres "
+        "its key ends in _m)");
     const std::string sigma = "sigma_px: 0.25";
     expect_error(sigma, sigma + "\n  noise: {focus_mm: 600}", "both focus_mm and aperture_mm");
     expect_error(sigma, sigma + "\n  noise: {tilt: 9}", "noise.tilt is 9, must be from 0 to 4");

@@ -158,6 +158,20 @@ TEST(PlannedPoints, EveryFormatInAnyOrderIsWhatATableHas) {
     EXPECT_EQ(read_points(lists[11]).unused_columns, std::vector<std::string>{"note"});
 }
 
+TEST(PlannedPoints, MayBeInInches) {
+    for (const char* const header :
+         {"name X [in] Y [in] Z [in]\n", "name,x_inch,y_inch,z_inch\n", "name X Y Z\n"}) {
+        const std::string text = header + std::string("P001_T1 10 -2.5 1\n");
+        const std::string list =
+            text[4] == ',' ? replaced(text, "P001_T1 10 -2.5 1", "P001_T1,10,-2.5,1") : text;
+        const bool states = list.find("in") != std::string::npos;
+        const MeasurementsFile read_here = read_points(list, states ? "" : "inch");
+        EXPECT_TRUE(
+            read_here.observation(0, 0).transpose().isApprox(Vector3d(0.254, -0.0635, 0.0254)))
+            << list;
+    }
+}
+
 TEST(PlannedPoints, WithoutThoseThatAreMissing) {
     const std::string text = "P001_T2 1 2 3\nV001_T1 4 5 6\nP002_T1 7 8 9\n";
     const MeasurementsFile some = read_points(text);
@@ -246,8 +260,8 @@ TEST(PlannedPoints, NamesOfDifferentIdsDiffer) {
         }
         std::string text;
         for (const PlannedPose& one : plan.poses) {
-            text +=
-                detail::target_name(one.id, 1) + ' ' + fmt::format("{} 1 2", text.size()) + '\n';
+            text += detail::target_name(one.id, 1) + ' ' + fmt::format("{} 1 2", 10 * text.size()) +
+                    '\n';
         }
         const auto read_all = [&] {
             const MeasurementsFile some = read_points(text, "mm", plan);
@@ -305,8 +319,10 @@ TEST(BadPoints, EachIsNamedInOneLine) {
             {good, "1 2 3\n",
              "1:1: no name is one of the plan's, such as P001_T1, and in order 1 "
              "point cannot be the plan's 7; [...]"},
-            {good, "name,x_in,y_in,z_in\n", "1:1: the header's unit is 'in'; must be mm, m or um"},
-            {good, "name,x [ft],y [ft],z [ft]\n", "1:1: the header's unit is 'ft'; must be [...]"},
+            {good, "name,x_in,y_in,z_in\n",
+             "1:1: the header's unit is inch, `points_unit` is mm; leave that out"},
+            {good, "name,x [ft],y [ft],z [ft]\n",
+             "1:1: the header's unit is 'ft'; must be mm, m, um or inch"},
             {good, "name,x_mm,y_m,z_mm\n",
              "1:1: the header states different units for x, y and z; must be one for all"},
             {good, "name,x_m,y_m,z_m\n",
@@ -331,7 +347,8 @@ TEST(BadPoints, EachIsNamedInOneLine) {
 
 TEST(BadPoints, WithoutAUnitTheOneThatFitsIsNamed) {
     const Plan plan = planned();
-    for (const auto& [unit, factor] : {std::pair("mm", 1e3), std::pair("m", 1.0)}) {
+    for (const auto& [unit, factor] :
+         {std::pair("mm", 1e3), std::pair("m", 1.0), std::pair("inch", 1 / 0.0254)}) {
         std::string text;
         for (const PlannedPose& one : plan.poses) {
             const Isometry3d flange =
@@ -354,6 +371,8 @@ TEST(BadPoints, WithoutAUnitTheOneThatFitsIsNamed) {
                               "the right unit",
                               wrong, unit));
     }
+    EXPECT_EQ(input_error_of([&] { read_points("P001_T1 1 2 3\n", "ft"); }),
+              "p.txt: `points_unit` is 'ft'; must be mm, m, um or inch");
     EXPECT_EQ(input_error_of([&] { read_points("P001_T1 1 2 3\nP002_T1 2 3 4\n", ""); }),
               "p.txt: does not state the unit of its points; state `points_unit`, or x_mm, y_mm, "
               "z_mm in a header");

@@ -178,6 +178,19 @@ TEST(SizeDoubts, NameAMarkerThatIsFarFromItsPlace) {
     EXPECT_EQ(found->units, &length_units);
 }
 
+TEST(Cures, FindIntrinsicsThatAreNotAsStated) {
+    const auto& [campaign, measured] = good();
+    CameraSetup wrong = setup_of(campaign);
+    wrong.intrinsics.cx += 40;
+    const Remedy found{"sensor.intrinsics.known: false", true};
+    const auto cures_of = [&](const Campaign& one) { return calibrate(one, measured).cures.found; };
+    EXPECT_EQ(std::ranges::count(cures_of(campaign), found, &Cure::remedy), 0);
+    const std::vector<Cure> cures = cures_of(with_setup(campaign, wrong));
+    ASSERT_EQ(std::ranges::count(cures, found, &Cure::remedy), 1);
+    EXPECT_EQ(cures.front().remedy, found);
+    EXPECT_LT(cures.front().after, 0.6 * cures.front().before);
+}
+
 TEST(EarlierEstimate, KeepsMarkersWhereTheBoardWasMovedSince) {
     Campaign campaign = before_camera(tracked_campaign(fanuc()), camera_before_cube());
     const Measurements measured =

@@ -33,12 +33,14 @@ Index read_count(const YamlValue& value, Index least) {
 
 /// Side of a square, marker or tag.
 double read_side(const YamlMeasure& measure) {
-    constexpr double shortest = 1e-5;  // m: no printer makes a smaller one
+    constexpr double shortest = 2e-4;  // m: no printer makes a smaller one, and metres look so
     const double side = read_positive(measure, false, longest);
     if (side >= shortest) return side;
     throw measure.value.error(fmt::format(
-        "is {}; must be from {:g} to {:g} {}, as what can be printed", quote(measure.value.text()),
-        measure.unit->from_si(shortest), measure.unit->from_si(longest), measure.unit->name));
+        "is {}; must be from {:g} to {:g} {}, as what can be printed (in metres its key ends in "
+        "_m)",
+        quote(measure.value.text()), measure.unit->from_si(shortest),
+        measure.unit->from_si(longest), measure.unit->name));
 }
 
 /// `count` places, `step` apart.

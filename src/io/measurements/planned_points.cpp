@@ -142,8 +142,8 @@ class Join {
         // then. Numbers without a unit are as they stand in the file, others in m.
         const double scale = list_.unit == nullptr ? 1 : list_.unit->to_si(1);
         std::string fitting;
-        for (const std::string& name : unit_names(Quantity::Length)) {
-            if (std::abs(find_unit(name)->to_si(ratio / scale) - 1) < 0.2) fitting = name;
+        for (const std::string& name : point_unit_names()) {
+            if (std::abs(find_point_unit(name)->to_si(ratio / scale) - 1) < 0.2) fitting = name;
         }
         if (list_.unit == nullptr) {
             throw input_error_at(
@@ -278,7 +278,11 @@ io::MeasurementsFile read_planned_points(const std::string& path, std::string co
             "measured (`plan` of calibrate, indices, inspect, select and study, `augment_plan` of "
             "plan), or be a table with the column config");
     }
-    const Unit* const unit = source.unit.empty() ? nullptr : find_unit(source.unit);
+    const Unit* const unit = source.unit.empty() ? nullptr : find_point_unit(source.unit);
+    if (unit == nullptr && !source.unit.empty()) {
+        throw error(fmt::format("`points_unit` is {}; must be {}", quote(source.unit),
+                                list_words(point_unit_names())));
+    }
     PointsList list = read_points_list(path, std::move(content), unit);
     if (list.unit == nullptr) list.unit = unit;
     const std::string mismatch = describe_mismatch(*source.plan, campaign);

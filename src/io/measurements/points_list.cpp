@@ -17,6 +17,8 @@ namespace {
 
 using Fields = std::vector<std::string_view>;
 
+constexpr Unit inches{"inch", Quantity::Length, 25.4, 1e3};
+
 constexpr std::array<std::string_view, 9> names_of_name{
     "name", "point", "target", "id", "point name", "point id", "target name", "label", "object"};
 /// Of an instrument's program, and of the targets that plan writes: not needed.
@@ -41,7 +43,7 @@ struct Title {
 
 /// Of those that are not read, the usual ones, so that they can be named.
 bool is_unit(const std::string& text) {
-    return find_unit(text) != nullptr || text == "in" || text == "inch" || text == "ft" ||
+    return find_unit(text) != nullptr || find_point_unit(text) != nullptr || text == "ft" ||
            text == "cm";
 }
 
@@ -177,10 +179,10 @@ class ListReader {
             throw error(0, "the header states different units for x, y and z; must be one for all");
         }
         if (units[0].empty()) return;
-        const Unit* const stated = find_unit(units[0]);
-        if (stated == nullptr || stated->quantity != Quantity::Length) {
+        const Unit* const stated = find_point_unit(units[0]);
+        if (stated == nullptr) {
             throw error(0, fmt::format("the header's unit is {}; must be {}", quote(units[0]),
-                                       list_words(unit_names(Quantity::Length))));
+                                       list_words(point_unit_names())));
         }
         if (unit_ != nullptr && unit_ != stated) {
             throw error(0,
@@ -266,6 +268,18 @@ class ListReader {
 };
 
 }  // namespace
+
+std::vector<std::string> point_unit_names() {
+    std::vector<std::string> names = unit_names(Quantity::Length);
+    names.emplace_back(inches.name);
+    return names;
+}
+
+const Unit* find_point_unit(std::string_view name) {
+    if (name == inches.name || name == "in") return &inches;
+    const Unit* const unit = find_unit(name);
+    return unit != nullptr && unit->quantity == Quantity::Length ? unit : nullptr;
+}
 
 bool is_points_list(const std::string& path, const std::string& content,
                     const std::vector<std::string>& joints, bool is_expected) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/format/units.hpp"
@@ -9,6 +10,11 @@
 
 /// Lists of points as instruments' programs write them.
 namespace posewise::detail {
+
+/// Units of points: those of all lengths, and inches, which nothing else here is stated in.
+std::vector<std::string> point_unit_names();
+/// nullptr if there is none of that name (or `in`).
+const Unit* find_point_unit(std::string_view name);
 
 struct NamedPoint {
     std::string name;   ///< empty: the list has none

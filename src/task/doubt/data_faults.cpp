@@ -122,6 +122,32 @@ void add_scatter(const Calibration& calibration, std::vector<OtherCampaign>& cam
     campaigns.push_back({"sensor.sigma_px: " + sigma, std::move(campaign)});
 }
 
+/// With intrinsic parameters found that are stated as known exactly.
+void add_unknown_intrinsics(const Campaign& campaign, std::vector<OtherCampaign>& campaigns) {
+    const auto* const camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
+    if (camera == nullptr) return;
+    CameraSetup setup = camera->setup();
+    std::vector<PlacedCamera> others;
+    bool is_any_known = false;
+    for (Index c = 0; c < camera->camera_count(); ++c) {
+        SingleCamera& one = c == 0 ? setup : setup.others[static_cast<std::size_t>(c - 1)];
+        if (c > 0) others.push_back(camera->placed(c, campaign.nominal.sensor));
+        const Index count = one.intrinsics.values().size();
+        const bool is_all_unknown = std::ssize(camera->unknown_intrinsics(c)) == count;
+        if (is_all_unknown || !camera->doubtful_intrinsics(c).empty()) continue;
+        is_any_known = true;
+        one.is_known.assign(static_cast<std::size_t>(count), false);
+        one.deviations.clear();
+    }
+    if (!is_any_known) return;
+    const Isometry3d place = camera->place(campaign.nominal.sensor);
+    const auto sensor = std::make_shared<CameraSensor>(std::move(setup));
+    Campaign other = campaign;
+    other.nominal.sensor = sensor->unknowns(place, sensor->setup().intrinsics, others);
+    other.sensor = sensor;
+    campaigns.push_back({"sensor.intrinsics.known: false", std::move(other)});
+}
+
 CureOptions cure_options(const CalibrationOptions& options, const Calibration& calibration) {
     CureOptions cures;
     cures.only_exclusions = !asks_for_models(calibration.doubts);
@@ -129,6 +155,7 @@ CureOptions cure_options(const CalibrationOptions& options, const Calibration& c
     cures.can_learn_sizes = !calibration.stated_spread;
     if (options.richer) cures.campaigns = options.richer();
     add_scatter(calibration, cures.campaigns);
+    add_unknown_intrinsics(calibration.campaign, cures.campaigns);
     return cures;
 }
 
