@@ -359,8 +359,8 @@ class RowReader {
                                         " (board.first_point: 0 in the campaign counts from 0)");
         const Index target = of.first_target + camera * of.corners() + number - first;
         detail::Corner corner{row_.id, row_.name, row_.joints, target, {}, {}};
-        corner.place << read_number(field_of_observation_[0]),
-            read_number(field_of_observation_[1]);
+        corner.place =
+            Vector2d{read_number(field_of_observation_[0]), read_number(field_of_observation_[1])};
         check_in_image(corner.place, camera_of(target).first->camera(camera), 0);
         for (const std::size_t joint : field_of_joint_)
             corner.locations.push_back(csv_.locate(joint));

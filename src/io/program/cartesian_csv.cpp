@@ -183,7 +183,7 @@ class CartesianReader {
         if (target.id.empty()) {
             throw input_error_at(csv_.locate(*find("config")), "config is empty; must be an id");
         }
-        target.frame_from_tool.translation() << number("x"), number("y"), number("z");
+        target.frame_from_tool.translation() = Vector3d{number("x"), number("y"), number("z")};
         target.frame_from_tool.linear() = read_orientation();
         if (!has_joints_) return target;
         target.seed.resize(std::ssize(joints_));
