@@ -57,6 +57,24 @@ double likely_length_factor(const Campaign& campaign, const Measurements& measur
     return nearest_length_factor(1 / extent);
 }
 
+/// Whether corners are in the image, but for a few that noise has moved out of it.
+bool is_in_image(const ReadingChanges& changes, const Campaign& campaign,
+                 const Measurements& measured) {
+    constexpr double few = 0.02;
+    if (!has_kind(changes, ReadingChange::Kind::Image)) return true;
+    const Measurements meant = read_with(changes, campaign, measured);
+    Index outside = 0;
+    for (Index sample = 0; sample < meant.is_seen.rows(); ++sample) {
+        for (const Index target : targets_seen(meant.is_seen.row(sample))) {
+            outside +=
+                campaign.sensor->is_readable(target, meant.observations.row(sample).transpose())
+                    ? 0
+                    : 1;
+        }
+    }
+    return static_cast<double>(outside) <= few * static_cast<double>(meant.is_seen.count());
+}
+
 /// Degrees read as rad go beyond a turn, and mm read as m beyond any rail. Taken as such smaller
 /// values would let the robot hardly move: then points that hardly move fit, whatever they are.
 bool is_possible(const ReadingChanges& changes, const Campaign& campaign,
@@ -168,7 +186,9 @@ FittedReadings fit_readings(const Campaign& campaign, const Measurements& measur
     std::vector<FittedReading>& readings = fitted.readings;
     for (ReadingChanges& changes :
          all_readings(campaign, measurements.notation, likely_length_factor(campaign, thinned))) {
-        if (!is_possible(changes, campaign, thinned)) continue;
+        if (!is_possible(changes, campaign, thinned) || !is_in_image(changes, campaign, thinned)) {
+            continue;
+        }
         readings.push_back({std::move(changes)});
     }
     const std::size_t polished = std::min(polished_count, readings.size());

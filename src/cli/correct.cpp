@@ -298,8 +298,16 @@ io::Configurations configurations_of(const io::TargetProgram& program,
 io::Configurations read_poses(const CorrectArguments& arguments, const io::CampaignFile& file,
                               const std::optional<ProgramToCorrect>& program,
                               const CartesianFrames& frames) {
-    if (!program && !arguments.is_cartesian) return io::read_program(arguments.poses, file);
     io::Configurations poses;
+    if (!program && !arguments.is_cartesian) {
+        poses = io::read_program(arguments.poses, file);
+        if (poses.is_corrected && !arguments.is_forced) {
+            throw input_error_at({arguments.poses},
+                                 "has a column uncorrected_..., so is what correct wrote; must "
+                                 "be nominal configurations (--force corrects it once more)");
+        }
+        return poses;
+    }
     std::vector<CartesianTarget> targets;
     if (program) {
         poses = configurations_of(program->program, file);

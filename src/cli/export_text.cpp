@@ -9,6 +9,7 @@
 #include "core/format.hpp"
 #include "core/text.hpp"
 #include "posewise/core/types.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/model/chain.hpp"
 
 namespace posewise::cli {
@@ -49,10 +50,17 @@ void print_loss(const io::ExportedRobot& robot) {
                            : "written is the estimate's (--geometry nearest: the other)\n");
 }
 
-void print_places(const Geometry& geometry, const std::string& base) {
+/// What the sensor has on the flange.
+const char* word_on_flange(const Campaign& campaign) {
+    if (campaign.sensor->has_orientation()) return "tool";
+    const auto* const camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
+    if (camera == nullptr) return "targets";
+    return camera->setup().is_on_flange ? "camera" : "board";
+}
+
+void print_places(const Geometry& geometry, const Campaign& campaign, const std::string& base) {
     print(fmt::format("\nnot part of the robot: {} ({}), and the {} in the flange frame", base,
-                      describe_frame(geometry.world_from_base),
-                      geometry.tool ? "tool" : "targets"));
+                      describe_frame(geometry.world_from_base), word_on_flange(campaign)));
     if (geometry.tool) return print(fmt::format(": {}\n", describe_frame(*geometry.tool)));
     const char* separator = ": ";
     for (const Vector3d& target : geometry.targets) {
@@ -173,9 +181,10 @@ void print_export(const io::ExportedRobot& robot, const io::CampaignFile& file,
                           detail::escape_controls(paths.offsets)));
     }
     print_loss(robot);
-    print_places(robot.written(), file.urdf && robot.urdf ? "where the instrument sees base link " +
-                                                                detail::quote(file.urdf->base_link)
-                                                          : "where the instrument sees the base");
+    print_places(robot.written(), file,
+                 file.urdf && robot.urdf
+                     ? "where the instrument sees base link " + detail::quote(file.urdf->base_link)
+                     : "where the instrument sees the base");
     for (const io::ReadBack& written : robot.read_back) {
         print(
             fmt::format("{} read back: the flange is within {:.1e} m and {:.1e} rad at {} "

@@ -82,6 +82,10 @@ TEST_F(Correct, LeavesLessThanAHundredthOfTheError) {
     EXPECT_NE(csv.find("\n\"b,c\",-"), std::string::npos) << csv;
     EXPECT_NEAR(std::strtod(csv.c_str() + csv.find("\na,") + 3, nullptr), 10, 0.5);
 
+    const Outcome again = run(correct_ + "c.csv -o d.csv");
+    EXPECT_EQ(again.code, 1);
+    EXPECT_NE(again.err.find("so is what correct wrote"), std::string::npos) << again.err;
+
     // Another base turns and moves every pose; the correction brings them there all the same.
     const std::string moved = run_well(correct_ + "p.csv --base campaign");
     EXPECT_NE(number_behind(moved, "position RMS/mm"), number_behind(text, "position RMS/mm"));
@@ -112,7 +116,7 @@ TEST_F(Correct, WritesWhatIsReadAsConfigurations) {
     run_well("simulate " + fanuc_design + " --configurations c.csv -o s.csv");
     EXPECT_NE(text_of("s.csv").find("\n\"b,c\",0,-"), std::string::npos) << text_of("s.csv");
     run_well("calibrate " + fanuc_design + " -m m.csv --folds 0 --predict c.csv");
-    run_well(correct_ + "c.csv");
+    run_well(correct_ + "c.csv --force");
     // Measurements have no such columns; nor is one there twice.
     expect_input_error("calibrate " + fanuc_design + " -m c.csv",
                        "missing columns p1_x_mm, p1_y_mm,");

@@ -191,6 +191,77 @@ TEST(Cures, FindIntrinsicsThatAreNotAsStated) {
     EXPECT_LT(cures.front().after, 0.6 * cures.front().before);
 }
 
+TEST(FindMisfit, NamesTheSideOnWhichACameraIsNot) {
+    const auto& [campaign, measured] = good();
+    CameraSetup other = setup_of(campaign);
+    other.is_on_flange = true;
+    const Campaign stated = before_camera(tracked_campaign(fanuc()), other);
+    const auto misfit = find_misfit(stated, measured, registered(stated, measured));
+    ASSERT_TRUE(misfit);
+    ASSERT_TRUE(misfit->on_other_side);
+    EXPECT_LT(*misfit->on_other_side, 0.1 * misfit->distance);
+    EXPECT_NE(describe_misfit(stated, *misfit).find("that stands still"), std::string::npos);
+}
+
+/// Far from where the camera sees the board a robot's errors move corners by any number of pixels.
+TEST(FindMisfit, IsNotHiddenByPosesThatShowNoBoard) {
+    CameraSetup setup = camera_on_flange();
+    setup.corners = chessboard(6, 4, 0.05);
+    Campaign campaign = before_camera(tracked_campaign(fanuc()), setup);
+    Measurements measured =
+        simulate(campaign, {.pose_count = 20, .repeats = 1, .truth_seed = 2, .seed = 7})
+            .measurements;
+    measured.configurations.col(2) *= -1;
+    const auto misfit = find_misfit(campaign, measured, registered(campaign, measured));
+    ASSERT_TRUE(misfit);
+    ASSERT_TRUE(misfit->reading);
+    EXPECT_EQ(misfit->reading->reversed, std::vector<std::string>{"q3"});
+}
+
+/// With unknown intrinsics u and v exchanged fit as well as one of them reversed.
+TEST(FindMisfit, NamesNoReadingThatLeavesTheImage) {
+    const auto& [campaign, measured] = good();
+    CameraSetup unknown = setup_of(campaign);
+    unknown.is_known.assign(unknown.intrinsics.names().size(), false);
+    const Campaign stated = before_camera(tracked_campaign(fanuc()), unknown);
+    Measurements upwards = measured;
+    for (Index u = 0; u < upwards.observations.cols(); u += 2) {
+        upwards.observations.col(u + 1) = 0.96 - upwards.observations.col(u + 1).array();
+    }
+    const auto misfit = find_misfit(stated, upwards, registered(stated, upwards));
+    ASSERT_TRUE(misfit);
+    ASSERT_TRUE(misfit->reading);
+    std::vector<std::string> fitting = misfit->reading->as_well;
+    fitting.push_back(misfit->reading->words);
+    const std::string right = "u, height - v in place of u, v";
+    EXPECT_EQ(std::ranges::count(fitting, right), 1);
+    for (const std::string& words : fitting) EXPECT_EQ(words.rfind("v", 0), std::string::npos);
+}
+
+TEST(CalibrateHandEye, DoesNotUseWhatFitsFarBetterOtherwise) {
+    const auto& [campaign, measured] = good();
+    const Campaign hand_eye = with_robot(campaign, without_parameters(campaign.robot));
+    const Calibration right = calibrate(hand_eye, measured);
+    EXPECT_TRUE(right.faults.empty()) << right.faults.front();
+    Measurements halved = measured;
+    halved.observations *= 0.5;
+    EXPECT_FALSE(calibrate(hand_eye, halved).faults.empty());
+    CameraSetup wrong = setup_of(campaign);
+    for (Vector3d& corner : wrong.corners) corner *= 1.2;
+    EXPECT_FALSE(calibrate(with_setup(hand_eye, wrong), measured).faults.empty());
+}
+
+TEST(CalibrateHandEye, FindsThatIntrinsicsAreNotAsStated) {
+    const auto& [campaign, measured] = good();
+    CameraSetup wrong = setup_of(campaign);
+    wrong.intrinsics.cx += 40;
+    const Campaign hand_eye = with_robot(campaign, without_parameters(campaign.robot));
+    const std::vector<Cure> cures = calibrate(with_setup(hand_eye, wrong), measured).cures.found;
+    EXPECT_EQ(
+        std::ranges::count(cures, Remedy{"sensor.intrinsics.known: false", true}, &Cure::remedy),
+        1);
+}
+
 TEST(EarlierEstimate, KeepsMarkersWhereTheBoardWasMovedSince) {
     Campaign campaign = before_camera(tracked_campaign(fanuc()), camera_before_cube());
     const Measurements measured =

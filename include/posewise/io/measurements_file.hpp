@@ -87,6 +87,7 @@ struct Configurations {
     Seen is_seen;        ///< which targets to measure there
     /// For a program with a column purpose (as plan --csv writes it): calibrate, verify or via.
     std::vector<std::string> purposes = {};
+    bool is_corrected = false;  ///< has columns as `correct` writes them
 };
 
 /// Reads configurations as read_measurements() does. A CSV file needs no sensor columns; their

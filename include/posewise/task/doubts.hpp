@@ -265,6 +265,14 @@ struct Misfit {
     bool is_between_cameras = false;  ///< each by itself is missed far less
     double others = 0;                ///< by which the other cameras, or each by itself, are missed
     std::optional<OtherImage> image{};  ///< if the intrinsics look like those of another image
+    /// By which half of the corners are missed if the camera is on the flange and not fixed, or the
+    /// other way round: where that is far less.
+    std::optional<double> on_other_side{};
+
+    /// Of a camera: whether it is known what fits far better.
+    bool is_explained() const {
+        return reading || image || camera || is_between_cameras || on_other_side;
+    }
 };
 
 /// Nothing if the nominal robot explains the measurements, or misses them by less than ten expected

@@ -475,6 +475,7 @@ class RowReader {
 struct ReadFile {
     MeasurementsFile samples;
     std::vector<std::string> purposes;
+    bool is_corrected = false;
 };
 
 ReadFile read_csv(detail::CsvReader csv, const std::string& path, const Campaign& campaign,
@@ -486,6 +487,8 @@ ReadFile read_csv(detail::CsvReader csv, const std::string& path, const Campaign
                                               : "config,q1_rad,..."));
     }
     detail::Header header = read_header(csv, campaign, content);
+    const bool is_corrected = std::ranges::any_of(
+        csv.fields(), [](std::string_view name) { return name.starts_with("uncorrected_m"); });
     RowReader row(csv, campaign, content, std::move(header.columns));
     detail::SampleCollector samples(campaign);
     while (csv.next_row()) row.add_to(samples);
@@ -502,14 +505,15 @@ ReadFile read_csv(detail::CsvReader csv, const std::string& path, const Campaign
     if (content == Content::JointsAndObservations && records_inverse(*campaign.sensor)) {
         invert_poses(measurements.observations);
     }
-    return {std::move(measurements), row.purposes()};
+    return {std::move(measurements), row.purposes(), is_corrected};
 }
 
 Configurations read_unmeasured(const std::string& path, const Campaign& campaign, Content content) {
-    auto [read, purposes] = read_csv(detail::CsvReader(path), path, campaign, content);
+    auto [read, purposes, is_corrected] =
+        read_csv(detail::CsvReader(path), path, campaign, content);
     const RowMatrixXd visible = times_seen(read);
     return {std::move(read.ids), std::move(read.configurations), visible.array() > 0,
-            std::move(purposes)};
+            std::move(purposes), is_corrected};
 }
 
 }  // namespace

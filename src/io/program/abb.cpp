@@ -31,10 +31,10 @@ std::string abb_stop(const io::RobotProgram& program, const io::ProgramStop& sto
         "    ! {}\n    MoveAbsJ [[{}],[9E9,9E9,9E9,9E9,9E9,9E9]]\\NoEOffs,slow,fine,tool0;\n",
         stop.label, joints_text(rules, program.joints, stop.joints, ","));
     if (!stop.is_measured) return text;
+    text += fmt::format("    TPWrite \"{}\";\n", stop.label);
     for (const double wait : waits_of(rules, program, stop)) {
         text += fmt::format("    WaitTime \\InPos,{};\n", seconds_text(wait));
     }
-    text += fmt::format("    TPWrite \"{}\";\n", stop.label);
     if (program.handshake == io::Handshake::Pause) text += "    Stop;\n";
     if (program.handshake == io::Handshake::Io) {
         text += "    SetDO do1,1;\n    WaitDI di1,1;\n    SetDO do1,0;\n    WaitDI di1,0;\n";

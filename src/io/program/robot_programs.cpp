@@ -101,7 +101,8 @@ void check_path(const std::string& path, ProgramFormat format) {
     const std::string legal = legal_program_name(format, stem);
     if (lower_case(legal) == lower_case(stem)) return;
     throw InputError(fmt::format(
-        "{}: the file has the program's name, which the controller would not take; must be like {}",
+        "{}: the file has the program's name, which the controller would not take, since it is too "
+        "long, has other characters, or is a name of the controller's own; must be like {}",
         path, detail::sibling_of(path, legal + std::string(rules.ending))));
 }
 

@@ -71,10 +71,10 @@ std::string staubli_stop(const io::RobotProgram& program, const io::ProgramStop&
     std::string text = fmt::format("  // {}\n  movej(joints[{}],flange,slow)\n  waitEndMove()\n",
                                    stop.label, number);
     if (!stop.is_measured) return text;
+    text += fmt::format("  putln(\"{}\")\n", stop.label);
     for (const double wait : waits_of(staubli_program().rules, program, stop)) {
         text += fmt::format("  delay({})\n", seconds_text(wait));
     }
-    text += fmt::format("  putln(\"{}\")\n", stop.label);
     if (program.handshake == io::Handshake::Pause) text += "  get()\n";
     return text;
 }

@@ -28,14 +28,13 @@ std::string ur_stop(const io::RobotProgram& program, const io::ProgramStop& stop
                     joints_text(rules, program.joints, stop.joints, ", "), acceleration,
                     joint_speed * static_cast<double>(program.speed_percent) / 100);
     if (!stop.is_measured) return text;
+    text += fmt::format("  textmsg(\"{}\")\n", stop.label);
     for (const double wait : waits_of(rules, program, stop)) {
         text += fmt::format("  sleep({})\n", seconds_text(wait));
     }
     if (program.handshake == io::Handshake::Pause) {
-        return text +
-               fmt::format("  popup(\"{}\", title=\"posewise\", blocking=True)\n", stop.label);
+        text += fmt::format("  popup(\"{}\", title=\"posewise\", blocking=True)\n", stop.label);
     }
-    text += fmt::format("  textmsg(\"{}\")\n", stop.label);
     if (program.handshake == io::Handshake::Io) {
         text +=
             "  set_digital_out(0, True)\n  while not get_digital_in(0):\n    sync()\n  end\n"

@@ -137,6 +137,9 @@ Json doubts_to_json(const Campaign& campaign, const Doubts& doubts) {
             json["misfit"]["image"] = misfit->image->words;
             json["misfit"]["with_image_px"] = 1e3 * misfit->image->distance;
         }
+        if (misfit->on_other_side) {
+            json["misfit"]["on_other_side_px"] = 1e3 * *misfit->on_other_side;
+        }
         if (misfit->camera) json["misfit"]["camera"] = *misfit->camera + 1;
         if (const auto& reading = misfit->reading) {
             json["misfit"]["reversed"] = reading->reversed;

@@ -11,6 +11,7 @@
 #include "answers.hpp"
 #include "calibration_options.hpp"
 #include "calibrator/robust.hpp"
+#include "core/format.hpp"
 #include "core/progress_counter.hpp"
 #include "core/text.hpp"
 #include "earlier_estimate.hpp"
@@ -162,8 +163,7 @@ void look(const Work& work, Calibration& result) {
     }
     if (!doubts.misfit && !doubts.gross_error) return;
     const bool has_pixels = work.campaign.sensor->has_only_pixels();
-    const bool is_explained = doubts.misfit && (doubts.misfit->reading || doubts.misfit->image);
-    if (has_pixels && is_explained) return;
+    if (has_pixels && doubts.misfit && doubts.misfit->is_explained()) return;
     if (!has_pixels) doubts.look.shifted = find_shifted_rows(work.campaign, work.used);
     if (!doubts.look.shifted && !doubts.look.outlying) {
         doubts.look.outlying = find_gross_configurations(work.campaign, work.used, result.estimate);
@@ -192,6 +192,27 @@ std::string describe_spoilt(const std::vector<ViewDoubt>& views) {
     return views.size() == 1
                ? fmt::format("view {} contradicts the others", detail::quote(views.front().sample))
                : fmt::format("{} views contradict the others", views.size());
+}
+
+/// What no errors of the robot can hide; empty: nothing. A robot whose errors are not fitted hides
+/// nothing.
+std::string describe_misread(const Campaign& campaign, const Doubts& doubts) {
+    constexpr double far = 3;
+    const bool has_pixels = campaign.sensor->has_only_pixels();
+    const bool has_errors = campaign.robot.parameter_count() > 0;
+    const auto& misfit = doubts.misfit;
+    const auto& camera = doubts.camera;
+    if (camera && camera->board_factor != 1 && camera->misfit > far * camera->scaled_misfit) {
+        return "the board is of another size than stated";
+    }
+    if (doubts.look.shifted && has_pixels) return "rows have the joint values of their neighbours";
+    if (!misfit || (has_errors && !has_pixels)) return "";
+    if (misfit->is_explained()) return "what was measured fits far better read otherwise";
+    if (has_errors) return "";
+    return fmt::format(
+        "the nominal robot, whose errors are not fitted, misses half of the {} by over {} {}",
+        campaign.sensor->words().readings, detail::format_short(1e3 * misfit->distance, 3),
+        campaign.sensor->main_units().error);
 }
 
 /// All that `used` alone tell.
@@ -236,6 +257,9 @@ void calibrate_with(Work& work, Calibration& result) {
     if (has_spoilt_views(result)) {
         result.faults.insert(result.faults.begin(), describe_spoilt(result.doubts.views));
     } else {
+        if (std::string fault = describe_misread(work.campaign, result.doubts); !fault.empty()) {
+            result.faults.insert(result.faults.begin(), std::move(fault));
+        }
         add_doubts(work.campaign, work.used, result.estimate, result.doubts);
         look(work, result);
         detail::judge_data({work.campaign, work.whole.robot, work.used, registered, work.beside()},

@@ -1,10 +1,14 @@
 #include "expected_distance.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 
 #include "calibrator/least_squares.hpp"
 #include "core/decompositions.hpp"
+#include "jacobian/nominal_factor.hpp"
+#include "measurement/contact.hpp"
 #include "model/complete_model.hpp"
 #include "posewise/planner/planning.hpp"
 
@@ -68,13 +72,41 @@ double largest_left_over(const Campaign& campaign, const Parameters& at,
     return expected_error(complete, none, measured, is_angle).total();
 }
 
+double expected_pixels(const Campaign& campaign, const Parameters& at,
+                       const Measurements& measured) {
+    constexpr Index enough = 25;
+    const Sensor& sensor = *campaign.sensor;
+    std::vector<Index> in_view;
+    VectorXd clearances(sensor.target_count());
+    for (Index i = 0; i < measured.configuration_count(); ++i) {
+        const VectorXd q = measured.configurations.row(i).transpose();
+        sensor.view_clearances(world_from_flange(campaign, at, q), at.sensor, clearances);
+        if (clearances.maxCoeff() > 0) in_view.push_back(i);
+    }
+    if (2 * std::ssize(in_view) > measured.configuration_count()) {
+        return largest_left_over(campaign, at, take(measured, in_view), true);
+    }
+    // Joints that are misread: beside the camera, or close to it, robots miss by any number.
+    const ViewedPoses poses = viewed_poses(campaign, at, enough, configuration_seed);
+    if (poses.in_view == 0) return std::numeric_limits<double>::infinity();
+    Measurements shown;
+    shown.configurations = poses.configurations.topRows(poses.in_view);
+    shown.is_seen = poses.is_seen.topRows(poses.in_view);
+    shown.observations = RowMatrixXd::Zero(poses.in_view, sensor.row_count());
+    for (Index i = 0; i < poses.in_view; ++i) {
+        shown.ids.push_back(fmt::format("{}", i));
+        shown.first_sample.push_back(i + 1);
+    }
+    return largest_left_over(campaign, at, shown, true);
+}
+
 double credible_distance(const Campaign& campaign, const Measurements& measured) {
     const Sensor& sensor = *campaign.sensor;
     if (sensor.has_lengths()) return credible_errors * expected_distance(campaign, measured);
     // Beside a wrong place of the camera it would be any number of pixels.
     const bool is_stated = campaign.has_nominal_base && campaign.has_nominal_targets;
     if (!sensor.has_only_pixels() || !is_stated) return std::numeric_limits<double>::infinity();
-    return credible_errors * largest_left_over(campaign, campaign.nominal, measured, true);
+    return credible_errors * expected_pixels(campaign, campaign.nominal, measured);
 }
 
 }  // namespace posewise::detail

@@ -23,6 +23,11 @@ double expected_distance(const Campaign& campaign, const Measurements& measured)
 double largest_left_over(const Campaign& campaign, const Parameters& at,
                          const Measurements& measured, bool is_angle);
 
+/// The same of a camera's corners at the configurations that show it the board, or at random ones
+/// that do where most of those measured do not.
+double expected_pixels(const Campaign& campaign, const Parameters& at,
+                       const Measurements& measured);
+
 /// Half of the points (m) or corners (1000 px) may be off by so much. Infinite where it is not
 /// known: of other angles, and of a camera whose place is not stated.
 double credible_distance(const Campaign& campaign, const Measurements& measured);

@@ -94,7 +94,10 @@ std::vector<std::string> find_data_faults(const Doubted& doubted, const Calibrat
     if (held_out) {
         add_comparison(*held_out, times_stated(doubted.campaign, doubted.estimate), units, faults);
     }
-    add_left_over(doubted, left_over(calibration), faults);
+    // Where none of its errors are fitted it leaves as much over as before.
+    if (doubted.campaign.robot.parameter_count() > 0) {
+        add_left_over(doubted, left_over(calibration), faults);
+    }
     if (const auto& lengths = calibration.doubts.look.lengths) {
         if (lengths->errors && std::abs(lengths->excess) > largest_factor) {
             faults.push_back(fmt::format(
@@ -152,7 +155,8 @@ CureOptions cure_options(const CalibrationOptions& options, const Calibration& c
     CureOptions cures;
     cures.only_exclusions = !asks_for_models(calibration.doubts);
     if (cures.only_exclusions || options.earlier) return cures;  // its sizes and errors are those
-    cures.can_learn_sizes = !calibration.stated_spread;
+    cures.can_learn_sizes =
+        !calibration.stated_spread && calibration.campaign.robot.parameter_count() > 0;
     if (options.richer) cures.campaigns = options.richer();
     add_scatter(calibration, cures.campaigns);
     add_unknown_intrinsics(calibration.campaign, cures.campaigns);
@@ -168,15 +172,18 @@ void judge_data(const CalibrationData& data, const CalibrationOptions& options,
         estimate.ending == Ending::Converged || estimate.ending == Ending::RoundoffLimited;
     const Index folds = comparable_folds(calibration.held_out ? calibration.held_out->folds : 0,
                                          data.measurements.configuration_count());
-    if (!is_final || folds == 0 || data.robot.parameter_count() == 0) return;
+    if (!is_final || folds == 0) return;
     LevenbergMarquardtOptions as_found = data.options;
     as_found.finds_model_error = false;
     const CrossValidation held_out = calibration.held_out
                                          ? *calibration.held_out
                                          : cross_validate(calibration.campaign, data.measurements,
                                                           estimate.parameters, folds, as_found);
-    const auto comparison = compare_with_nominal(data.campaign, data.robot, data.measurements,
-                                                 data.registered, held_out, as_found);
+    const bool has_errors = data.robot.parameter_count() > 0;
+    const auto comparison = has_errors
+                                ? compare_with_nominal(data.campaign, data.robot, data.measurements,
+                                                       data.registered, held_out, as_found)
+                                : std::nullopt;
     if (options.stop.is_set()) return;
     if (calibration.held_out && held_out.samples.point_count > 0) {
         calibration.held_out_comparison = comparison;

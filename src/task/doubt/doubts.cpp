@@ -227,11 +227,7 @@ Doubts find_doubts(const Campaign& campaign, const Measurements& measurements,
     if (campaign.sensor->has_only_pixels()) {
         doubts.misfit = find_misfit(campaign, measurements, registered);
         const auto& misfit = doubts.misfit;
-        // All else follows from it.
-        if (misfit &&
-            (misfit->reading || misfit->image || misfit->camera || misfit->is_between_cameras)) {
-            return doubts;
-        }
+        if (misfit && misfit->is_explained()) return doubts;  // all else follows from it
         // Rows of other poses also look like views of another place, or a board of another size.
         if (misfit) doubts.look.shifted = find_shifted_rows(campaign, measurements);
         if (doubts.look.shifted) return doubts;
@@ -250,6 +246,8 @@ Doubts find_doubts(const Campaign& campaign, const Measurements& measurements,
     doubts.camera = find_camera_doubt(campaign, measured, registered);
     if (doubts.camera && doubts.camera->board_factor != 1) {
         doubts.misfit.reset();
+    } else if (doubts.camera && doubts.misfit) {
+        doubts.camera->scatter = 0;  // about a camera that is elsewhere
     } else if (!campaign.sensor->has_only_pixels()) {
         doubts.misfit = find_misfit(campaign, measured, registered);
     }

@@ -15,6 +15,7 @@
 #include "posewise/calibrator/estimate.hpp"
 #include "posewise/core/errors.hpp"
 #include "posewise/core/types.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/task/doubts.hpp"
 #include "task/calibration/expected_distance.hpp"
 
@@ -45,6 +46,16 @@ bool are_orientations_off(const Campaign& campaign, const RowMatrixXd& residuals
     return metrics.orientation_rms > detail::gross_angle;
 }
 
+double expected_pixels_of(const Campaign& campaign, const Measurements& measured,
+                          const Parameters& registered) {
+    // Beside a wrong place of the camera it would be any number of pixels.
+    if (campaign.has_nominal_base && campaign.has_nominal_targets) {
+        const double expected = detail::expected_pixels(campaign, campaign.nominal, measured);
+        if (std::isfinite(expected)) return expected;
+    }
+    return detail::expected_pixels(campaign, registered, measured);
+}
+
 /// Of the instrument that tells most by itself, if it is in the unit of all.
 std::optional<Misfit> find_misfit_of_part(const Campaign& campaign, const Measurements& measured,
                                           const Parameters& registered) {
@@ -69,10 +80,7 @@ std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& 
     Misfit misfit;
     const RowMatrixXd residuals = mean_residuals(campaign, registered, measured);
     misfit.distance = detail::median_distance(residuals);
-    // Beside a wrong place of the camera it would be any number of pixels.
-    const bool is_stated = campaign.has_nominal_base && campaign.has_nominal_targets;
-    const Parameters& at = is_stated ? campaign.nominal : registered;
-    misfit.expected = has_pixels ? detail::largest_left_over(campaign, at, measured, true)
+    misfit.expected = has_pixels ? expected_pixels_of(campaign, measured, registered)
                                  : detail::expected_distance(campaign, measured);
     misfit.image = detail::find_other_image(campaign, measured, registered);
     if (misfit.image) return misfit;
@@ -86,6 +94,8 @@ std::optional<Misfit> find_misfit(const Campaign& campaign, const Measurements& 
     if (auto of_cameras = detail::find_camera_misfit(campaign, measured, misfit)) {
         return of_cameras;
     }
+    misfit.on_other_side = detail::find_other_side(campaign, measured, misfit);
+    if (misfit.on_other_side) return misfit;
     misfit.reading = search_readings(campaign, measured).better;
     const bool is_credible = misfit.distance <= detail::credible_errors * misfit.expected;
     if (is_credible && !misfit.reading) return std::nullopt;
@@ -131,6 +141,17 @@ std::string describe_misfit(const Campaign& campaign, const Misfit& misfit) {
             "measured in, of its size and neither cropped nor turned",
             misfit.image->words, detail::format_short(1e3 * misfit.image->distance, 3),
             detail::format_short(1e3 * misfit.distance, 3));
+    }
+    if (misfit.on_other_side) {
+        const auto& camera = dynamic_cast<const CameraSensor&>(*campaign.sensor);
+        return fmt::format(
+            "the corners fit a camera {}: the nominal robot then misses half of them by {} instead "
+            "of {} px; sensor.camera says {}",
+            camera.setup().is_on_flange ? "that stands still and sees the board on the flange"
+                                        : "on the flange that sees a board that stands still",
+            detail::format_short(1e3 * *misfit.on_other_side, 3),
+            detail::format_short(1e3 * misfit.distance, 3),
+            camera.setup().is_on_flange ? "flange" : "fixed");
     }
     if (misfit.camera) {
         return fmt::format(

@@ -15,6 +15,7 @@
 #include "posewise/core/errors.hpp"
 #include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/measurement/measurements.hpp"
+#include "task/calibration/expected_distance.hpp"
 
 namespace posewise::detail {
 namespace {
@@ -85,6 +86,12 @@ Campaign with_change(const Campaign& campaign, const CameraSensor& sensor, const
     return other;
 }
 
+/// As many configurations as it takes.
+Measurements part_of(const Measurements& measured) {
+    constexpr Index enough = 40;
+    return take(measured, evenly_spaced(measured.configuration_count(), enough));
+}
+
 /// By how much the nominal robot misses half of the corners, infinite if it is not registered.
 double distance_of(const Campaign& campaign, const Measurements& measured) {
     try {
@@ -143,9 +150,34 @@ std::array<Vector2d, 2> image_of(const CameraSensor& sensor, Index camera,
     return {(least + most) / 2, most - least};
 }
 
+std::optional<double> find_other_side(const Campaign& campaign, const Measurements& measured,
+                                      const Misfit& misfit) {
+    constexpr double far_less = 0.2;
+    const auto* const sensor = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
+    if (sensor == nullptr) return std::nullopt;
+    CameraSetup setup = sensor->setup();
+    setup.is_on_flange = !setup.is_on_flange;
+    setup.known_place.reset();
+    setup.view = {};
+    std::vector<PlacedCamera> others;
+    for (Index c = 1; c < sensor->camera_count(); ++c) {
+        others.push_back(sensor->placed(c, campaign.nominal.sensor));
+    }
+    const auto turned = std::make_shared<CameraSensor>(std::move(setup));
+    Campaign other = campaign;
+    other.nominal.sensor =
+        turned->unknowns(Isometry3d::Identity(), turned->setup().intrinsics, others);
+    other.sensor = turned;
+    other.has_nominal_base = other.has_nominal_targets = false;
+    const double found = distance_of(other, part_of(measured));
+    if (!(found < std::min(far_less * misfit.distance, credible_errors * misfit.expected))) {
+        return std::nullopt;
+    }
+    return found;
+}
+
 std::optional<OtherImage> find_other_image(const Campaign& campaign, const Measurements& measured,
                                            const Parameters& registered) {
-    constexpr Index enough = 40;  // configurations
     constexpr double clearly = 0.5;
     const auto* const sensor = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
     if (sensor == nullptr) return std::nullopt;
@@ -153,7 +185,7 @@ std::optional<OtherImage> find_other_image(const Campaign& campaign, const Measu
     if (!is_off_middle(*sensor, measured) && !fits_no_pose(campaign, measured, registered)) {
         return std::nullopt;
     }
-    const Measurements part = take(measured, evenly_spaced(measured.configuration_count(), enough));
+    const Measurements part = part_of(measured);
     const double stated = median_distance(mean_residuals(campaign, registered, part));
     std::optional<OtherImage> best;
     for (const Change& change : changes_to_try(*sensor, part)) {

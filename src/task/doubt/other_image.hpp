@@ -19,4 +19,10 @@ std::array<Vector2d, 2> image_of(const CameraSensor& sensor, Index camera,
 std::optional<OtherImage> find_other_image(const Campaign& campaign, const Measurements& measured,
                                            const Parameters& registered);
 
+/// By which half of the corners are missed if a camera on the flange stands still, with the board
+/// on the flange, or the other way round; nothing: not as a robot misses them, not far less than
+/// now, or of no camera.
+std::optional<double> find_other_side(const Campaign& campaign, const Measurements& measured,
+                                      const Misfit& misfit);
+
 }  // namespace posewise::detail
