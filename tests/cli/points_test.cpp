@@ -347,7 +347,7 @@ TEST_F(Points, WhatIsWrongIsSaidAndNothingWritten) {
     write_text("other.yaml", "name: other\n" + (arm + tracker).substr(arm.find('\n') + 1));
     expect_input_error("calibrate other.yaml -m p.txt --points-unit mm --plan plan.json" + out,
                        "plan.json: campaign: is 'arm'; must be a plan of 'other'\n");
-    EXPECT_EQ(run("calibrate c.yaml -m p.txt --plan plan.json --points-unit inch").code, 2);
+    EXPECT_EQ(run("calibrate c.yaml -m p.txt --plan plan.json --points-unit ft").code, 2);
     EXPECT_EQ(run("inspect c.yaml --plan plan.json").code, 2);
 }
 

@@ -208,7 +208,8 @@ std::string describe_misread(const Campaign& campaign, const Doubts& doubts) {
     if (doubts.look.shifted && has_pixels) return "rows have the joint values of their neighbours";
     if (!misfit || (has_errors && !has_pixels)) return "";
     if (misfit->is_explained()) return "what was measured fits far better read otherwise";
-    if (has_errors) return "";
+    // Of points it is as good as the robot.
+    if (has_errors || !has_pixels) return "";
     return fmt::format(
         "the nominal robot, whose errors are not fitted, misses half of the {} by over {} {}",
         campaign.sensor->words().readings, detail::format_short(1e3 * misfit->distance, 3),
