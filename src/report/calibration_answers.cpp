@@ -7,7 +7,9 @@
 #include "core/format.hpp"
 #include "core/names.hpp"
 #include "core/text.hpp"
+#include "posewise/calibrator/estimate.hpp"
 #include "posewise/core/types.hpp"
+#include "posewise/measurement/camera_sensor.hpp"
 #include "posewise/report/reports.hpp"
 #include "sentences.hpp"
 #include "task/calibration/judgement.hpp"
@@ -331,6 +333,38 @@ std::string judge_residuals(const Calibration& calibration) {
     return text;
 }
 
+std::string list_short(const Vector3d& values) {
+    return fmt::format("{} {} {}", format_short(values[0], 2), format_short(values[1], 2),
+                       format_short(values[2], 2));
+}
+
+std::string list_mm(const Vector3d& position) {
+    return fmt::format("{:.3f} {:.3f} {:.3f}", mm_per_m * position[0], mm_per_m * position[1],
+                       mm_per_m * position[2]);
+}
+
+/// What hand-eye is done for: only where no errors of the robot are found beside it.
+std::string describe_place(const Calibration& calibration) {
+    const Campaign& campaign = calibration.campaign;
+    const auto* const camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
+    const bool is_found = camera != nullptr && !camera->setup().known_place;
+    if (!is_found || campaign.robot.parameter_count() > 0 || !calibration.faults.empty()) return "";
+    const VectorXd& unknowns = calibration.estimate.parameters.sensor;
+    const VectorXd sigmas = standard_deviations(calibration.estimate)
+                                .tail(unknowns.size())
+                                .segment<6>(camera->first_of_place());
+    const bool is_on_flange = camera->setup().is_on_flange;
+    std::string text = fmt::format(
+        "the {} is at {} mm in the flange frame, give or take {} mm along and {} mrad about its "
+        "axes (1 sigma)",
+        is_on_flange ? "camera" : "board", list_mm(camera->place(unknowns).translation()),
+        list_short(mm_per_m * sigmas.head<3>()), list_short(mrad_per_rad * sigmas.tail<3>()));
+    if (is_on_flange) return text;
+    const Isometry3d base_from_camera = calibration.estimate.parameters.world_from_base.inverse();
+    return text + fmt::format("; the camera is at {} mm in the base frame",
+                              list_mm(base_from_camera.translation()));
+}
+
 std::string describe_missing_errors(const Calibration& calibration) {
     if (!calibration.doubts.missing_errors) return "";
     return fmt::format(
@@ -366,6 +400,7 @@ std::vector<Answer> answer(const Calibration& calibration) {
     add("influence", "Which pose matters most", describe_influence(calibration, units));
     add("drift", "Drift", describe_order(calibration) + describe_conditions(calibration));
     add("more", "More poses for 20 % less", describe_more(calibration, units));
+    add("place", "Where it is", describe_place(calibration));
     add("image", "Where in the image",
         detail::describe_images("corners of the board cover ", calibration.images));
     add("residuals", "Residuals", judge_residuals(calibration));

@@ -227,6 +227,27 @@ TEST(FormatCalibration, ShowsWhatAnotherInstrumentJudgesInItsOwnUnits) {
               calibration.expected_robot->calibrated >= calibration.expected_robot->nominal);
 }
 
+TEST(AnswerCalibration, SaysWhereACameraIsThatIsFoundAlone) {
+    const Campaign robot = testing::before_camera(testing::tracked_campaign(testing::fanuc()),
+                                                  testing::fixed_camera());
+    const Measurements views =
+        simulate(robot, {.pose_count = 30, .repeats = 1, .truth_seed = 2}).measurements;
+    CalibrationOptions options;
+    options.folds = 0;
+    const auto place_of = [&](const Campaign& campaign) {
+        for (const Answer& one : answer(calibrate(campaign, views, options))) {
+            if (one.key == "place") return one.text;
+        }
+        return std::string();
+    };
+    EXPECT_EQ(place_of(robot), "");
+    const std::string place = place_of(with_robot(robot, without_parameters(robot.robot)));
+    const std::string begin = "the board is at ";
+    ASSERT_EQ(place.find(begin), 0U) << place;
+    EXPECT_NEAR(std::stod(place.substr(begin.size())), 100, 1);
+    EXPECT_NE(place.find("; the camera is at "), std::string::npos) << place;
+}
+
 TEST(AnswerCalibration, SaysWhichPartsOfTheImageCornersCover) {
     const Campaign seen = testing::before_camera(testing::tracked_campaign(testing::fanuc()),
                                                  testing::fixed_camera());
