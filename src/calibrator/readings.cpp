@@ -66,10 +66,8 @@ bool is_in_image(const ReadingChanges& changes, const Campaign& campaign,
     Index outside = 0;
     for (Index sample = 0; sample < meant.is_seen.rows(); ++sample) {
         for (const Index target : targets_seen(meant.is_seen.row(sample))) {
-            outside +=
-                campaign.sensor->is_readable(target, meant.observations.row(sample).transpose())
-                    ? 0
-                    : 1;
+            const auto observation = meant.observations.row(sample).transpose();
+            if (!campaign.sensor->is_readable(target, observation)) ++outside;
         }
     }
     return static_cast<double>(outside) <= few * static_cast<double>(meant.is_seen.count());

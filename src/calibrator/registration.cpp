@@ -374,7 +374,7 @@ Index least_calibration_count(const Campaign& campaign, const StopSignal& stop) 
     constexpr std::uint64_t seed = 20152;  // any: it only has to be the same every time
     // More than as many as there are unknowns do not help: what is open then is open always.
     const Index most = least + 12 + observed->points.unknown_count();
-    RowMatrixXd in_view;  // of a camera poses that show nothing tell nothing
+    RowMatrixXd in_view;  // a camera learns nothing from poses that do not show it the board
     if (nominal.sensor->has_view()) {
         in_view = detail::viewed_poses(nominal, nominal.nominal, most, seed).configurations;
     }

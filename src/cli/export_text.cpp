@@ -51,11 +51,10 @@ void print_loss(const io::ExportedRobot& robot) {
 }
 
 /// What the sensor has on the flange.
-const char* word_on_flange(const Campaign& campaign) {
+std::string word_on_flange(const Campaign& campaign) {
     if (campaign.sensor->has_orientation()) return "tool";
     const auto* const camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
-    if (camera == nullptr) return "targets";
-    return camera->setup().is_on_flange ? "camera" : "board";
+    return camera == nullptr ? "targets" : camera->setup().on_flange();
 }
 
 void print_places(const Geometry& geometry, const Campaign& campaign, const std::string& base) {

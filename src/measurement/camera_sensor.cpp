@@ -165,9 +165,10 @@ CameraSensor::CameraSensor(CameraSetup setup)
     }
 }
 
-const SingleCamera& CameraSensor::camera(Index camera) const {
-    if (camera == 0) return setup_;
-    return setup_.others[static_cast<std::size_t>(camera - 1)];
+std::vector<PlacedCamera> CameraSensor::placed_others(const VectorXd& unknowns) const {
+    std::vector<PlacedCamera> others;
+    for (Index c = 1; c < camera_count(); ++c) others.push_back(placed(c, unknowns));
+    return others;
 }
 
 Isometry3d CameraSensor::place(const VectorXd& unknowns) const {
@@ -361,7 +362,7 @@ SightLines CameraSensor::sight_lines(const Isometry3d& world_from_flange,
 }
 
 SensorWords CameraSensor::words() const {
-    const std::string what = setup_.is_on_flange ? "camera" : "board";
+    const std::string what = setup_.on_flange();
     std::size_t unknown = 0, doubtful = 0, all = 0;
     for (Index c = 0; c < camera_count(); ++c) {
         unknown += unknown_intrinsics(c).size();

@@ -466,7 +466,7 @@ std::string describe_unchecked_bodies(const Campaign& campaign) {
     return text;
 }
 
-double joint_distance(const VectorXd& a, const VectorXd& b) {
+double joint_distance(const ConstNumbers& a, const ConstNumbers& b) {
     constexpr double pi = std::numbers::pi;
     const auto apart = [](double difference) {
         return std::abs(std::abs(difference) > pi ? std::remainder(difference, 2 * pi)

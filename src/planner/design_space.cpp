@@ -76,7 +76,7 @@ RowMatrixXd rows_of(const DesignSpace& space, const HeldPoses& held, const RowMa
 
 bool is_apart(const RowMatrixXd& poses, const Eigen::RowVectorXd& q, double distance) {
     for (const auto pose : poses.rowwise()) {
-        if (joint_distance(pose, q) < distance) return false;
+        if (joint_distance(pose.transpose(), q.transpose()) < distance) return false;
     }
     return true;
 }

@@ -109,8 +109,8 @@ class Refiner {
         const auto keep_away = [&](const RowMatrixXd& others, Index skipped) {
             for (Index k = 0; k < others.rows(); ++k) {
                 if (k == skipped) continue;
-                least =
-                    std::min(least, joint_distance(others.row(k), q) - space_.least_joint_distance);
+                const double distance = joint_distance(others.row(k).transpose(), q);
+                least = std::min(least, distance - space_.least_joint_distance);
             }
         };
         keep_away(poses_, i);

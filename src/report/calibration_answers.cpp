@@ -343,7 +343,8 @@ std::string list_mm(const Vector3d& position) {
                        mm_per_m * position[2]);
 }
 
-/// What hand-eye is done for: only where no errors of the robot are found beside it.
+/// Where camera or board is, which hand-eye is done for. Empty where errors of the robot are found,
+/// too.
 std::string describe_place(const Calibration& calibration) {
     const Campaign& campaign = calibration.campaign;
     const auto* const camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
@@ -353,13 +354,12 @@ std::string describe_place(const Calibration& calibration) {
     const VectorXd sigmas = standard_deviations(calibration.estimate)
                                 .tail(unknowns.size())
                                 .segment<6>(camera->first_of_place());
-    const bool is_on_flange = camera->setup().is_on_flange;
     std::string text = fmt::format(
         "the {} is at {} mm in the flange frame, give or take {} mm along and {} mrad about its "
         "axes (1 sigma)",
-        is_on_flange ? "camera" : "board", list_mm(camera->place(unknowns).translation()),
+        camera->setup().on_flange(), list_mm(camera->place(unknowns).translation()),
         list_short(mm_per_m * sigmas.head<3>()), list_short(mrad_per_rad * sigmas.tail<3>()));
-    if (is_on_flange) return text;
+    if (camera->setup().is_on_flange) return text;
     const Isometry3d base_from_camera = calibration.estimate.parameters.world_from_base.inverse();
     return text + fmt::format("; the camera is at {} mm in the base frame",
                               list_mm(base_from_camera.translation()));

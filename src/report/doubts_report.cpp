@@ -224,8 +224,8 @@ std::string describe_held_out(const Campaign& campaign, const HeldOutComparison&
         detail::format_error(held_out.nominal, units));
 }
 
-/// Of poses that were judged at: that they are missed by no less than before, and one that has
-/// nearly all of what they are missed by.
+/// Says of poses that judge the calibration if they are missed by no less than before, and if one
+/// of them has nearly all of the error.
 void add_judged(const std::optional<Judgement>& judged, const char* which,
                 std::vector<std::string>& sentences) {
     constexpr double plainly = 2;

@@ -205,7 +205,7 @@ struct TargetProgram {
     std::string content;
     std::vector<JointTarget> targets;
     std::vector<PlaceTarget> places = {};
-    std::optional<StatedTool> tool = {};  ///< of the places, where numbers state it
+    std::optional<StatedTool> tool = {};  ///< of the places; nothing: no numbers state one
     /// Lines of targets that are no joint values, or that are added to others: they stay as they
     /// are.
     std::vector<long> others;

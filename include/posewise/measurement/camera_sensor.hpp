@@ -127,6 +127,18 @@ struct CameraSetup : SingleCamera {
     CameraView view{};
     /// Further cameras that see the same board. Where each is in the first one's frame is unknown.
     std::vector<SingleCamera> others{};
+
+    /// The first camera is number 0.
+    const SingleCamera& camera(Index number) const {
+        if (number == 0) return *this;
+        return others[static_cast<std::size_t>(number - 1)];
+    }
+    SingleCamera& camera(Index number) {
+        if (number == 0) return *this;
+        return others[static_cast<std::size_t>(number - 1)];
+    }
+    /// "camera" or "board".
+    std::string on_flange() const { return is_on_flange ? "camera" : "board"; }
 };
 
 /// A camera that returns the places of n corners in its image, two numbers each, u and v, in
@@ -149,9 +161,11 @@ class CameraSensor final : public Sensor {
     Isometry3d place(const VectorXd& unknowns) const;
     /// Cameras count from 0.
     Index camera_count() const { return 1 + static_cast<Index>(setup_.others.size()); }
-    const SingleCamera& camera(Index camera) const;
+    const SingleCamera& camera(Index camera) const { return setup_.camera(camera); }
     /// Where a camera is in the first one's frame, and its lens.
     PlacedCamera placed(Index camera, const VectorXd& unknowns) const;
+    /// All but the first.
+    std::vector<PlacedCamera> placed_others(const VectorXd& unknowns) const;
     Intrinsics intrinsics(const VectorXd& unknowns) const { return placed(0, unknowns).intrinsics; }
     /// Which of Intrinsics::values() are unknown.
     const std::vector<Index>& unknown_intrinsics(Index camera) const {

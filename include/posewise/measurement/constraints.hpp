@@ -162,7 +162,7 @@ std::string describe_violation(const Constraints& constraints, const VectorXd& q
 
 /// Largest joint difference between two configurations, rad or m. Whole turns are none: a joint is
 /// where it was.
-double joint_distance(const VectorXd& a, const VectorXd& b);
+double joint_distance(const ConstNumbers& a, const ConstNumbers& b);
 
 /// How many candidates a constraint removed.
 struct Rejections {

@@ -269,7 +269,7 @@ struct Misfit {
     /// other way round: where that is far less.
     std::optional<double> on_other_side{};
 
-    /// Of a camera: whether it is known what fits far better.
+    /// Whether something else that was tried fits far better.
     bool is_explained() const {
         return reading || image || camera || is_between_cameras || on_other_side;
     }

@@ -105,7 +105,7 @@ std::map<std::string, std::pair<std::string, std::string>> kuka_fdats(const std:
     return fdats;
 }
 
-/// The FDATs of the file and of the .dat beside it, which has the same name.
+/// The file's own FDATs and those of the .dat of the same name beside it.
 std::map<std::string, std::pair<std::string, std::string>> all_kuka_fdats(const std::string& path,
                                                                           const std::string& text) {
     auto fdats = kuka_fdats(text);
@@ -130,19 +130,16 @@ bool is_calculated(std::string_view value) {
 void read_kuka_frames(const std::string& path, const std::string& text, Frames& frames) {
     const auto fdats = all_kuka_fdats(path, text);
     for_each_line(text, [&](const std::string& line, long number) {
-        for (const auto& [tool, base] :
-             {std::pair{"$tool", "$base"}, std::pair{"tool_data[", "base_data["}}) {
-            for (const char* const set : {tool, base}) {
-                const std::size_t sign = line.find('=');
-                if (!line.starts_with(set) || sign == std::string::npos) continue;
-                const std::string name = line.substr(0, sign);
-                const std::string value = line.substr(sign + 1);
-                if (name.find('.') != std::string::npos || is_calculated(value)) {
-                    frames.refuse(number, "calculates " + quote(name));
-                }
-                if (name == "$tool") frames.add_tool(value);
-                if (name == "$base") frames.add_frame(value);
+        for (const char* const set : {"$tool", "$base", "tool_data[", "base_data["}) {
+            const std::size_t sign = line.find('=');
+            if (!line.starts_with(set) || sign == std::string::npos) continue;
+            const std::string name = line.substr(0, sign);
+            const std::string value = line.substr(sign + 1);
+            if (name.find('.') != std::string::npos || is_calculated(value)) {
+                frames.refuse(number, "calculates " + quote(name));
             }
+            if (name == "$tool") frames.add_tool(value);
+            if (name == "$base") frames.add_frame(value);
         }
         if (const std::string tool = behind(line, "bas(#tool,", ")"); !tool.empty()) {
             frames.add_tool("tool_data[" + tool + "]");
@@ -159,7 +156,7 @@ void read_kuka_frames(const std::string& path, const std::string& text, Frames& 
             frames.add_tool(fdat);
         }
     });
-    // Of a .dat each FDAT may be that of a place.
+    // Moves are in the .src: a place of a .dat may be of any FDAT.
     if (lower_case(ending_of(path)) != ".dat") return;
     for (const auto& [name, data] : fdats) {
         frames.add_tool(data.first);
@@ -232,6 +229,10 @@ void read_ur_frames(const std::string& text, Frames& frames) {
 
 // ---- The tool ----
 
+long line_of(const std::string& text, std::size_t at) {
+    return 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+}
+
 std::optional<Vector3d> numbers_at(const std::string& text, Cursor& cursor, std::size_t count) {
     const auto spans = cursor.numbers(count, ']');
     if (!spans) return std::nullopt;
@@ -264,7 +265,7 @@ std::optional<Vector3d> kuka_tool(const std::string& text, Cursor cursor) {
     return position;
 }
 
-/// Of "tooldata NAME:=[TRUE,[[0,0,250],...", which the robot holds.
+/// Where "tooldata NAME:=[TRUE,[[0,0,250],..." puts a tool that the robot holds.
 std::optional<Vector3d> abb_tool_position(const std::string& text, Cursor cursor,
                                           const std::string& name) {
     const bool is_held = cursor.word() == name && cursor.take(':') && cursor.take('=') &&
@@ -274,6 +275,32 @@ std::optional<Vector3d> abb_tool_position(const std::string& text, Cursor cursor
     const auto mm = numbers_at(text, cursor, 3);
     if (!mm) return std::nullopt;
     return Vector3d(*mm / mm_per_m);
+}
+
+/// Where the text, in small letters, first has a position behind the marker.
+std::optional<io::StatedTool> find_tool(
+    const std::string& text, std::string_view marker,
+    const std::function<std::optional<Vector3d>(const Cursor&)>& read_position) {
+    for (std::size_t at = text.find(marker); at != std::string::npos;
+         at = text.find(marker, at + 1)) {
+        const auto position = read_position(Cursor(text, at + marker.size()));
+        if (position) return io::StatedTool{line_of(text, at), *position};
+    }
+    return std::nullopt;
+}
+
+std::optional<io::StatedTool> abb_stated_tool(const std::string& text) {
+    std::string tool;  // of the first move that names one
+    std::size_t used = 0;
+    for_each_abb_move(text, [&](std::string_view move, std::size_t at) {
+        const std::string one = abb_tool(move);
+        if (!tool.empty() || !is_identifier(one)) return;
+        tool = one;
+        used = at;
+    });
+    if (tool == "tool0") return io::StatedTool{line_of(text, used), Vector3d::Zero()};
+    return find_tool(text, "tooldata",
+                     [&](const Cursor& cursor) { return abb_tool_position(text, cursor, tool); });
 }
 
 }  // namespace
@@ -288,35 +315,18 @@ void check_one_frame(const std::string& path, const std::string& text, ProgramFo
 
 std::optional<io::StatedTool> stated_tool(const std::string& text, ProgramFormat format) {
     const std::string lower = lower_case(text);
-    const auto line_of = [&](std::size_t at) {
-        return std::count(lower.begin(), lower.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1;
-    };
-    std::string tool;  // of ABB's moves
-    std::size_t used = 0;
-    if (format == ProgramFormat::Abb) {
-        for_each_abb_move(text, [&](std::string_view move, std::size_t at) {
-            const std::string one = abb_tool(move);
-            if (!tool.empty() || !is_identifier(one)) return;
-            tool = one;
-            used = at;
-        });
-        if (tool == "tool0") return io::StatedTool{line_of(used), Vector3d::Zero()};
+    switch (format) {
+        case ProgramFormat::Kuka:
+            return find_tool(lower, "$tool",
+                             [&](const Cursor& cursor) { return kuka_tool(lower, cursor); });
+        case ProgramFormat::Abb:
+            return abb_stated_tool(lower);
+        case ProgramFormat::Ur:
+            return find_tool(lower, "set_tcp",
+                             [&](const Cursor& cursor) { return ur_tool(lower, cursor); });
+        default:
+            return std::nullopt;
     }
-    const std::string_view marker = format == ProgramFormat::Ur     ? "set_tcp"
-                                    : format == ProgramFormat::Kuka ? "$tool"
-                                    : format == ProgramFormat::Abb  ? "tooldata"
-                                                                    : "";
-    if (marker.empty()) return std::nullopt;
-    for (std::size_t at = lower.find(marker); at != std::string::npos;
-         at = lower.find(marker, at + 1)) {
-        const Cursor cursor(lower, at + marker.size());
-        const auto position = format == ProgramFormat::Ur ? ur_tool(lower, cursor)
-                              : format == ProgramFormat::Kuka
-                                  ? kuka_tool(lower, cursor)
-                                  : abb_tool_position(lower, cursor, tool);
-        if (position) return io::StatedTool{line_of(at), *position};
-    }
-    return std::nullopt;
 }
 
 }  // namespace posewise::detail

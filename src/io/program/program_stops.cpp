@@ -29,21 +29,6 @@ std::vector<std::string_view> words_of_statement(std::string_view text) {
     return words;
 }
 
-/// Whether it is one of the words, some of which may end in *.
-bool begins_as(std::string_view text, std::string_view words) {
-    const std::string lower = lower_case(std::string(text));
-    while (!words.empty()) {
-        const std::size_t end = std::min(words.find(' '), words.size());
-        const std::string word = lower_case(std::string(words.substr(0, end)));
-        words.remove_prefix(std::min(end + 1, words.size()));
-        if (word.ends_with('*') ? lower.starts_with(word.substr(0, word.size() - 1))
-                                : lower == word) {
-            return true;
-        }
-    }
-    return false;
-}
-
 bool could_be_label(std::string_view word) {
     return !word.empty() && word.size() <= longest_label && is_identifier('_' + std::string(word));
 }
@@ -128,7 +113,7 @@ void StopCollector::check_others(const TextLine& statement) {
     const bool is_modified = is_word(words.front(), flow.modifiers) && words.size() > 1;
     if (is_word(words[is_modified ? 1 : 0], flow.routines)) return;
     for (const std::string_view word : words) {
-        if (!begins_as(word, rules_.others)) continue;
+        if (!is_word(word, rules_.others)) continue;
         throw statement.error(fmt::format(
             "has {}, which moves the robot otherwise or leads moves elsewhere; must be removed",
             quote(word)));

@@ -182,7 +182,7 @@ class TargetReader {
     std::vector<std::size_t> line_begins_{0};
     std::string upper_;  ///< the content in capitals
     TargetProgram program_;
-    std::map<long, const char*> reasons_;  ///< of lines in `others`
+    std::map<long, const char*> reasons_;  ///< why a line is in `others`
     std::vector<TextSpan> fanuc_frames_;   ///< "UF : 0, UT : 1" of each place
 };
 
@@ -530,7 +530,7 @@ bool is_abb_target(std::string_view text) {
 /// What stands before the outermost bracket that is open at this one, in its line and statement.
 std::string_view abb_statement_before(std::string_view text, std::size_t at) {
     std::size_t outermost = at;
-    long depth = 0;  // of what is closed before
+    long depth = 0;  // how many brackets were closed and not yet opened, seen from the end
     for (std::size_t k = at; k > 0 && text[k - 1] != ';'; --k) {
         if (text[k - 1] == ']') ++depth;
         if (text[k - 1] != '[') continue;

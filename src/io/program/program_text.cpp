@@ -44,7 +44,13 @@ std::string upper_case(std::string text) {
 bool is_word(std::string_view text, std::string_view words) {
     while (!words.empty()) {
         const std::size_t end = std::min(words.find(' '), words.size());
-        if (std::ranges::equal(text, words.substr(0, end), is_same_letter)) return true;
+        std::string_view word = words.substr(0, end);
+        std::string_view compared = text;
+        if (word.ends_with('*')) {
+            word.remove_suffix(1);
+            compared = text.substr(0, word.size());
+        }
+        if (std::ranges::equal(compared, word, is_same_letter)) return true;
         words.remove_prefix(std::min(end + 1, words.size()));
     }
     return false;

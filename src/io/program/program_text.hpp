@@ -42,10 +42,11 @@ struct ProgramRules {
     std::string_view waits = "";     ///< begin statements at which the robot waits
     std::string_view messages = "";  ///< begin statements that show the pose's label
     std::string_view moves = "";     ///< begin statements that move, or stand before their target
-    /// Words, wherever they stand in a statement, of moves that are not read and of what leads
-    /// moves elsewhere; * stands for any ending.
+    /// Words of moves that are not read and of what leads moves elsewhere: a statement has them
+    /// nowhere.
     std::string_view others = "";
-    /// Begin the statements that do neither, beside calls, assignments and labels; empty: any may.
+    /// Begin all statements that do neither, but for calls, assignments and labels. Empty: not
+    /// known, so that any word may begin one.
     std::string_view harmless = "";
     std::string_view target = "";  ///< that moves have, and assignments
     Index target_numbers = 0;      ///< that follow it at least
@@ -70,7 +71,8 @@ struct ProgramKind {
 inline constexpr std::size_t longest_label = 16;
 
 std::string lower_case(std::string text);
-/// Whether it is one of the words, which blanks separate, whatever their case.
+/// Whether it is one of the words, which blanks separate, whatever their case. A word that ends in
+/// * stands for all that begin so.
 bool is_word(std::string_view text, std::string_view words);
 /// In capitals.
 std::string upper_case(std::string text);

@@ -125,9 +125,7 @@ std::optional<CameraPlaces> camera_places(const Campaign& campaign, const Parame
         std::make_optional(with(camera->setup().is_on_flange, camera->place(found.sensor)));
     places->intrinsics = camera->intrinsics(found.sensor);
     places->image = camera->setup().image;
-    for (Index c = 1; c < camera->camera_count(); ++c) {
-        places->others.push_back(camera->placed(c, found.sensor));
-    }
+    places->others = camera->placed_others(found.sensor);
     return places;
 }
 

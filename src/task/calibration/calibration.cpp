@@ -36,6 +36,7 @@ struct Work {
     const CalibrationOptions& options;
     Index folds;
     detail::ProgressCounter counter;
+    std::optional<detail::NominalRobot> nominal{};  ///< base and targets fitted to what is used
 
     /// One part is done.
     ProgressCallback step() {
@@ -229,8 +230,10 @@ void calibrate_with(Work& work, Calibration& result) {
     identify_by_method(work, registered, result);
     work.counter.count();
     if (!result.is_identified()) return;
-    result.nominal_residuals = detail::nominal_residuals(work.campaign, work.whole.robot, work.used,
-                                                         registered, work.beside());
+    work.nominal = detail::fit_nominal_robot(work.campaign, work.whole.robot, work.used, registered,
+                                             work.beside());
+    result.nominal_residuals =
+        residuals(work.nominal->campaign, work.nominal->parameters(), work.used);
     result.nominal = make_metrics(result.nominal_residuals, *work.campaign.sensor);
     result.repeatability = repeatability(*work.campaign.sensor, work.used);
     result.campaign = with_model_error(work.campaign, result.estimate);
@@ -327,30 +330,25 @@ void find_moved_since(const Work& work, Calibration& result) {
     if (!moved->parts.empty()) result.moved_since = moved;
 }
 
-/// Base and targets fitted to what was calibrated with; nothing: the robot is taken as it is.
-std::optional<detail::NominalRobot> fit_nominal(const Work& work) {
-    if (work.campaign.robot.parameter_count() == 0) return std::nullopt;
-    const Registration registered = register_base_and_targets(work.campaign, work.used);
-    return detail::fit_nominal_robot(work.campaign, work.whole.robot, work.used,
-                                     registered.parameters, work.beside());
+/// To compare with; nullptr: no errors of the robot are found, so that it is the same.
+const detail::NominalRobot* nominal_of(const Work& work) {
+    return work.campaign.robot.parameter_count() > 0 ? &*work.nominal : nullptr;
 }
 
-/// With the same parts refitted to the validation as the calibrated robot has.
-std::optional<detail::NominalRobot> fit_nominal_to_validation(const Work& work,
-                                                              const Campaign& campaign) {
-    auto nominal = fit_nominal(work);
-    if (!nominal || work.options.refitted.empty()) return nominal;
+/// With the same parts refitted to the validation as the calibrated robot has; nothing: they cannot
+/// be, or it is the same.
+std::optional<detail::NominalRobot> nominal_at_validation(const Work& work,
+                                                          const Campaign& campaign) {
+    if (nominal_of(work) == nullptr) return std::nullopt;
+    detail::NominalRobot nominal = *work.nominal;
+    if (work.options.refitted.empty()) return nominal;
     Estimate before;
-    before.parameters = nominal->parameters();
-    nominal->campaign = with_robot(campaign, without_parameters(campaign.robot));
-    nominal->fitted = detail::refit_parts({work.beside(), true}, nominal->campaign, before,
-                                          *work.options.validation, work.options.refitted);
-    if (!nominal->fitted.undetermined.empty()) return std::nullopt;
+    before.parameters = nominal.parameters();
+    nominal.campaign = with_robot(campaign, without_parameters(campaign.robot));
+    nominal.fitted = detail::refit_parts({work.beside(), true}, nominal.campaign, before,
+                                         *work.options.validation, work.options.refitted);
+    if (!nominal.fitted.undetermined.empty()) return std::nullopt;
     return nominal;
-}
-
-const detail::NominalRobot* pointer_to(const std::optional<detail::NominalRobot>& nominal) {
-    return nominal ? &*nominal : nullptr;
 }
 
 /// On the measurements of the validation.
@@ -370,10 +368,10 @@ void validate(const Work& work, Calibration& result) {
     }
     // What else was identified there the estimate's covariance does not tell.
     const bool is_same = options.validation_campaign == nullptr;
-    const auto nominal = fit_nominal_to_validation(work, campaign);
+    const auto nominal = nominal_at_validation(work, campaign);
     result.validation =
         detail::judge({campaign, estimate, work.used.configurations, is_same,
-                       refitted_count(options.refitted, campaign), pointer_to(nominal)},
+                       refitted_count(options.refitted, campaign), nominal ? &*nominal : nullptr},
                       *options.validation);
     if (is_same && options.refitted.empty()) {
         result.moved =
@@ -387,10 +385,9 @@ void judge_others(const Work& work, const Measurements& all, Calibration& result
         std::optional<Judgement> judgement;
         if (configurations.empty()) return judgement;
         const Measurements others = take(all, configurations);
-        const auto nominal = fit_nominal(work);
-        judgement = detail::judge({result.campaign, result.estimate, work.used.configurations, true,
-                                   0, pointer_to(nominal)},
-                                  others);
+        judgement = detail::judge(
+            {result.campaign, result.estimate, work.used.configurations, true, 0, nominal_of(work)},
+            others);
         if (judgement->is_beyond()) {
             judgement->moved =
                 detail::find_moved(work.refitting(), result.campaign, result.estimate, others);

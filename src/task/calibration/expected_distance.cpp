@@ -100,13 +100,17 @@ double expected_pixels(const Campaign& campaign, const Parameters& at,
     return largest_left_over(campaign, at, shown, true);
 }
 
+double expected_pixels_as_stated(const Campaign& campaign, const Measurements& measured) {
+    const bool is_stated = campaign.has_nominal_base && campaign.has_nominal_targets;
+    if (!is_stated) return std::numeric_limits<double>::infinity();
+    return expected_pixels(campaign, campaign.nominal, measured);
+}
+
 double credible_distance(const Campaign& campaign, const Measurements& measured) {
     const Sensor& sensor = *campaign.sensor;
     if (sensor.has_lengths()) return credible_errors * expected_distance(campaign, measured);
-    // Beside a wrong place of the camera it would be any number of pixels.
-    const bool is_stated = campaign.has_nominal_base && campaign.has_nominal_targets;
-    if (!sensor.has_only_pixels() || !is_stated) return std::numeric_limits<double>::infinity();
-    return credible_errors * expected_pixels(campaign, campaign.nominal, measured);
+    if (!sensor.has_only_pixels()) return std::numeric_limits<double>::infinity();
+    return credible_errors * expected_pixels_as_stated(campaign, measured);
 }
 
 }  // namespace posewise::detail

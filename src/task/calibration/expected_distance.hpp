@@ -28,6 +28,10 @@ double largest_left_over(const Campaign& campaign, const Parameters& at,
 double expected_pixels(const Campaign& campaign, const Parameters& at,
                        const Measurements& measured);
 
+/// The same beside the camera's place as the campaign states it; infinite where it states none, or
+/// one that shows no board.
+double expected_pixels_as_stated(const Campaign& campaign, const Measurements& measured);
+
 /// Half of the points (m) or corners (1000 px) may be off by so much. Infinite where it is not
 /// known: of other angles, and of a camera whose place is not stated.
 double credible_distance(const Campaign& campaign, const Measurements& measured);

@@ -130,11 +130,9 @@ void add_unknown_intrinsics(const Campaign& campaign, std::vector<OtherCampaign>
     const auto* const camera = dynamic_cast<const CameraSensor*>(campaign.sensor.get());
     if (camera == nullptr) return;
     CameraSetup setup = camera->setup();
-    std::vector<PlacedCamera> others;
     bool is_any_known = false;
     for (Index c = 0; c < camera->camera_count(); ++c) {
-        SingleCamera& one = c == 0 ? setup : setup.others[static_cast<std::size_t>(c - 1)];
-        if (c > 0) others.push_back(camera->placed(c, campaign.nominal.sensor));
+        SingleCamera& one = setup.camera(c);
         const Index count = one.intrinsics.values().size();
         const bool is_all_unknown = std::ssize(camera->unknown_intrinsics(c)) == count;
         if (is_all_unknown || !camera->doubtful_intrinsics(c).empty()) continue;
@@ -143,10 +141,11 @@ void add_unknown_intrinsics(const Campaign& campaign, std::vector<OtherCampaign>
         one.deviations.clear();
     }
     if (!is_any_known) return;
-    const Isometry3d place = camera->place(campaign.nominal.sensor);
+    const VectorXd& nominal = campaign.nominal.sensor;
     const auto sensor = std::make_shared<CameraSensor>(std::move(setup));
     Campaign other = campaign;
-    other.nominal.sensor = sensor->unknowns(place, sensor->setup().intrinsics, others);
+    other.nominal.sensor = sensor->unknowns(camera->place(nominal), sensor->setup().intrinsics,
+                                            camera->placed_others(nominal));
     other.sensor = sensor;
     campaigns.push_back({"sensor.intrinsics.known: false", std::move(other)});
 }

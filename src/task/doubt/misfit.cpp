@@ -49,11 +49,9 @@ bool are_orientations_off(const Campaign& campaign, const RowMatrixXd& residuals
 double expected_pixels_of(const Campaign& campaign, const Measurements& measured,
                           const Parameters& registered) {
     // Beside a wrong place of the camera it would be any number of pixels.
-    if (campaign.has_nominal_base && campaign.has_nominal_targets) {
-        const double expected = detail::expected_pixels(campaign, campaign.nominal, measured);
-        if (std::isfinite(expected)) return expected;
-    }
-    return detail::expected_pixels(campaign, registered, measured);
+    const double as_stated = detail::expected_pixels_as_stated(campaign, measured);
+    return std::isfinite(as_stated) ? as_stated
+                                    : detail::expected_pixels(campaign, registered, measured);
 }
 
 /// Of the instrument that tells most by itself, if it is in the unit of all.

@@ -76,7 +76,7 @@ Campaign with_change(const Campaign& campaign, const CameraSensor& sensor, const
                      const Measurements& measured) {
     CameraSetup setup = sensor.setup();
     for (Index c = 0; c < sensor.camera_count(); ++c) {
-        SingleCamera& camera = c == 0 ? setup : setup.others[static_cast<std::size_t>(c - 1)];
+        SingleCamera& camera = setup.camera(c);
         if (!is_known(camera)) continue;
         camera.intrinsics = changed(camera.intrinsics, change, size_of(sensor, c, measured));
     }
@@ -159,14 +159,10 @@ std::optional<double> find_other_side(const Campaign& campaign, const Measuremen
     setup.is_on_flange = !setup.is_on_flange;
     setup.known_place.reset();
     setup.view = {};
-    std::vector<PlacedCamera> others;
-    for (Index c = 1; c < sensor->camera_count(); ++c) {
-        others.push_back(sensor->placed(c, campaign.nominal.sensor));
-    }
     const auto turned = std::make_shared<CameraSensor>(std::move(setup));
     Campaign other = campaign;
-    other.nominal.sensor =
-        turned->unknowns(Isometry3d::Identity(), turned->setup().intrinsics, others);
+    other.nominal.sensor = turned->unknowns(Isometry3d::Identity(), turned->setup().intrinsics,
+                                            sensor->placed_others(campaign.nominal.sensor));
     other.sensor = turned;
     other.has_nominal_base = other.has_nominal_targets = false;
     const double found = distance_of(other, part_of(measured));
